@@ -1,0 +1,75 @@
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace raymeter {
+
+/// A structure would need more memory than it was allowed. The message says how much and how much is allowed.
+class MemoryLimitExceeded : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Counts the bytes that a structure holds, their peak, and refuses to exceed a limit. Thread-safe.
+class MemoryMeter {
+ public:
+  explicit MemoryMeter(std::uint64_t limit = std::numeric_limits<std::uint64_t>::max()) : limit_(limit) {}
+  MemoryMeter(const MemoryMeter&) = delete;
+  MemoryMeter& operator=(const MemoryMeter&) = delete;
+
+  /// Throws MemoryLimitExceeded, having counted nothing, when the limit does not allow it.
+  void add(std::uint64_t bytes);
+  void remove(std::uint64_t bytes) noexcept { bytes_ -= bytes; }
+  std::uint64_t bytes() const { return bytes_; }
+  std::uint64_t peak() const { return peak_; }
+  std::uint64_t limit() const { return limit_; }
+
+ private:
+  std::atomic<std::uint64_t> bytes_ = 0, peak_ = 0;
+  std::uint64_t limit_;
+};
+
+/// Lets a standard container charge its memory to a meter, which must outlive it.
+template <class T>
+class MeteredAllocator {
+ public:
+  using value_type = T;
+  using propagate_on_container_move_assignment = std::true_type;
+  using propagate_on_container_swap = std::true_type;
+
+  explicit MeteredAllocator(MemoryMeter& meter) : meter_(&meter) {}
+  template <class U>
+  MeteredAllocator(const MeteredAllocator<U>& other) : meter_(other.meter_) {}
+
+  T* allocate(std::size_t n) {
+    meter_->add(n * sizeof(T));
+    try {
+      return std::allocator<T>().allocate(n);
+    } catch (...) {
+      meter_->remove(n * sizeof(T));
+      throw;
+    }
+  }
+  void deallocate(T* p, std::size_t n) noexcept {
+    std::allocator<T>().deallocate(p, n);
+    meter_->remove(n * sizeof(T));
+  }
+  template <class U>
+  friend bool operator==(const MeteredAllocator& a, const MeteredAllocator<U>& b) {
+    return a.meter_ == b.meter_;
+  }
+
+ private:
+  template <class U>
+  friend class MeteredAllocator;
+  MemoryMeter* meter_;
+};
+
+template <class T>
+using MeteredVector = std::vector<T, MeteredAllocator<T>>;
+
+}  // namespace raymeter

@@ -1,0 +1,51 @@
+#pragma once
+// The one place where a traversal meets a primitive: filter, then `decide`.
+#include <algorithm>
+
+#include "accel/probe.h"
+#include "scenes/geometry/decide.h"
+#include "scenes/geometry/filter.h"
+#include "scenes/scene.h"
+
+namespace raymeter {
+
+/// Tests one primitive against `ray` and keeps the better of its hit and `best`. `best` starts as Hit{}.
+template <class Probe>
+inline void test_closest(const Scene& scene, std::uint32_t primitive, const FilterRay& ray, Hit& best,
+                         Probe& probe) {
+  probe.test(primitive);
+  const float tmax = std::min(best.t, ray.ray.tfar);
+  float t = no_hit;
+  if (scene.is_triangle(primitive)) {
+    const Triangle triangle = scene.triangle(primitive);
+    if (!may_hit(ray, triangle, tmax)) return;
+    probe.decide();
+    t = decide(ray.ray, triangle);
+  } else {
+    const Quadric& quadric = scene.quadric(primitive);
+    if (!may_hit(ray, quadric, tmax)) return;
+    probe.decide();
+    t = decide(ray.ray, quadric);
+  }
+  if (t == no_hit) return;
+  const Hit hit{t, primitive};
+  if (hit < best) best = hit;
+}
+
+/// Whether the primitive is hit in the ray's interval.
+template <class Probe>
+inline bool test_any(const Scene& scene, std::uint32_t primitive, const FilterRay& ray, Probe& probe) {
+  probe.test(primitive);
+  if (scene.is_triangle(primitive)) {
+    const Triangle triangle = scene.triangle(primitive);
+    if (!may_hit(ray, triangle, ray.ray.tfar)) return false;
+    probe.decide();
+    return decide(ray.ray, triangle) != no_hit;
+  }
+  const Quadric& quadric = scene.quadric(primitive);
+  if (!may_hit(ray, quadric, ray.ray.tfar)) return false;
+  probe.decide();
+  return decide(ray.ray, quadric) != no_hit;
+}
+
+}  // namespace raymeter

@@ -1,0 +1,7 @@
+#include "accel/registry.h"
+
+namespace raymeter {
+
+void register_accel(Registry&) {}
+
+}  // namespace raymeter

@@ -1,0 +1,12 @@
+#include "scenes/generators/generators.h"
+
+#include "scenes/generators/families.h"
+
+namespace raymeter {
+
+std::span<const SceneGenerator> scene_generators() {
+  static const std::vector<SceneGenerator> generators{soup_generator()};
+  return generators;
+}
+
+}  // namespace raymeter
