@@ -1,0 +1,95 @@
+#pragma once
+// What every walk of a ray through a subdivided box has in common, and why no walk here loses a hit.
+//
+// All walks compute in double, from planes whose positions are functions of integer cell indices (never
+// accumulated). A plane's crossing (plane - o) / d then has a relative error of 3 ulps, so at every t each
+// coordinate of the ray's point is within 4 * 2^-53 * (distance from the origin) of the cell that the walk
+// believes to be in at that t. `margin` is larger than that for every ray that starts within 2^16 diagonals
+// of the box. So it suffices that a primitive is registered in every cell whose box, grown by `margin` on all
+// sides, meets the primitive: then the cell the walk is in at the hit's t lists the primitive. Rays from
+// farther away are `too_far` and must be answered without a walk, by testing every primitive.
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/geometry/bounds.h"
+#include "scenes/geometry/ray.h"
+
+namespace raymeter {
+
+/// The box that a structure subdivides: the scene's, grown by the margin, so that it is nowhere flat.
+struct WalkSpace {
+  Vec3d low, high;
+  double margin = 0;
+  double far_limit = 0;  ///< rays that start farther than this from the box (1-norm) are `too_far`
+
+  WalkSpace() = default;
+  /// `box` must not be empty.
+  explicit WalkSpace(const Bounds& box) {
+    const double diagonal = box.diagonal();
+    double magnitude = 0x1p-126;
+    for (int axis = 0; axis < 3; ++axis)
+      magnitude = std::max({magnitude, std::abs(double(box.low[axis])), std::abs(double(box.high[axis]))});
+    // The second term keeps the margin well above the rounding of a coordinate, in a small box far from 0.
+    margin = std::max(diagonal * 0x1p-32, magnitude * 0x1p-45);
+    far_limit = diagonal * 0x1p16;
+    low = to_double(box.low) - Vec3d{margin, margin, margin};
+    high = to_double(box.high) + Vec3d{margin, margin, margin};
+  }
+  Vec3d extent() const { return high - low; }
+};
+
+/// A traceable ray (ray.h) in double. Directions of 0 and -0 have an inverse of +-inf, which callers must not
+/// multiply by 0: see `crossing`.
+struct WalkRay {
+  Vec3d origin, direction, inverse;
+
+  explicit WalkRay(const Ray& ray)
+      : origin(to_double(ray.origin)),
+        direction(to_double(ray.direction)),
+        inverse{1 / direction.x, 1 / direction.y, 1 / direction.z} {}
+
+  /// The t at which the ray crosses the plane at `position` on `axis`; +inf when it never does.
+  double crossing(int axis, double position) const {
+    return direction[axis] == 0 ? std::numeric_limits<double>::infinity()
+                                : (position - origin[axis]) * inverse[axis];
+  }
+};
+
+struct WalkInterval {
+  double enter, leave;
+  bool empty() const { return !(enter <= leave); }
+};
+
+/// The part of the ray's [tnear, tfar] inside the box low..high, which must have been grown by a margin:
+/// its own rounding is below that. Empty where the ray misses.
+inline WalkInterval clip(const WalkRay& walk, const Ray& ray, const Vec3d& low, const Vec3d& high) {
+  WalkInterval interval{ray.tnear, ray.tfar};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (walk.direction[axis] == 0) {
+      if (walk.origin[axis] < low[axis] || walk.origin[axis] > high[axis]) return {1, 0};
+      continue;
+    }
+    const double t0 = (low[axis] - walk.origin[axis]) * walk.inverse[axis];
+    const double t1 = (high[axis] - walk.origin[axis]) * walk.inverse[axis];
+    interval.enter = std::max(interval.enter, std::min(t0, t1));
+    interval.leave = std::min(interval.leave, std::max(t0, t1));
+  }
+  return interval;
+}
+
+/// Whether the ray starts too far from the box for a walk in double to be proved (see above).
+inline bool too_far(const WalkRay& walk, const WalkSpace& space) {
+  double distance = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    distance += std::max({0.0, space.low[axis] - walk.origin[axis], walk.origin[axis] - space.high[axis]});
+  return distance > space.far_limit;
+}
+
+/// Whether nothing entered at t = `enter` or later can beat a hit at `best_t`: strictly beyond it, by more
+/// than the rounding of the crossing and of the hit's float t together (2^-24 relative), so that ties are all
+/// seen.
+inline bool beyond(double enter, float best_t) {
+  return enter - std::abs(enter) * 0x1p-22 > best_t;
+}
+
+}  // namespace raymeter
