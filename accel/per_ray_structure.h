@@ -6,16 +6,17 @@ namespace raymeter {
 
 /// Makes the four batch functions from an author's two per-ray templates (see Structure). `Derived` has
 /// `closest_hit` and `any_hit`; they are compiled twice, with NoProbe for timing and with CountingProbe for
-/// counting, so that timed code carries no counter.
+/// counting, so that timed code carries no counter. The trace functions may be overridden, to trace rays of a
+/// batch together.
 template <class Derived>
 class PerRayStructure : public Structure {
  public:
-  void trace_closest(const BatchView& batch, std::span<Hit> hits) const final {
+  void trace_closest(const BatchView& batch, std::span<Hit> hits) const override {
     const FlushDenormals mode;
     NoProbe probe;
     for (std::size_t i = 0; i < batch.rays.size(); ++i) hits[i] = self().closest_hit(batch.rays[i], probe);
   }
-  void trace_any(const BatchView& batch, std::span<std::uint8_t> occluded) const final {
+  void trace_any(const BatchView& batch, std::span<std::uint8_t> occluded) const override {
     const FlushDenormals mode;
     NoProbe probe;
     for (std::size_t i = 0; i < batch.rays.size(); ++i) occluded[i] = self().any_hit(batch.rays[i], probe);

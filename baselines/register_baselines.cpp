@@ -1,0 +1,11 @@
+#include "baselines/register_baselines.h"
+
+#include "baselines/brute_force.h"
+
+namespace raymeter {
+
+void register_baselines(Registry& registry) {
+  registry.add(brute_force_kind());
+}
+
+}  // namespace raymeter
