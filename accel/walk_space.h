@@ -60,10 +60,11 @@ struct WalkInterval {
   bool empty() const { return !(enter <= leave); }
 };
 
-/// The part of the ray's [tnear, tfar] inside the box low..high, which must have been grown by a margin:
-/// its own rounding is below that. Empty where the ray misses.
+/// The part of the ray's [tnear, tfar], widened by the rounding of a hit's t, inside the box low..high, which
+/// must have been grown by a margin: its own rounding is below that. Empty where the ray misses.
 inline WalkInterval clip(const WalkRay& walk, const Ray& ray, const Vec3d& low, const Vec3d& high) {
-  WalkInterval interval{ray.tnear, ray.tfar};
+  // A hit somewhat beyond tfar counts when its float t is rounded to tfar (or to 0, below FLT_MIN).
+  WalkInterval interval{ray.tnear, ray.tfar + std::abs(double(ray.tfar)) * 0x1p-22 + 0x1p-126};
   for (int axis = 0; axis < 3; ++axis) {
     if (walk.direction[axis] == 0) {
       if (walk.origin[axis] < low[axis] || walk.origin[axis] > high[axis]) return {1, 0};
@@ -86,10 +87,10 @@ inline bool too_far(const WalkRay& walk, const WalkSpace& space) {
 }
 
 /// Whether nothing entered at t = `enter` or later can beat a hit at `best_t`: strictly beyond it, by more
-/// than the rounding of the crossing and of the hit's float t together (2^-24 relative), so that ties are all
-/// seen.
+/// than the rounding of the crossing and of the hit's float t together (2^-24 relative, and all of a t below
+/// FLT_MIN), so that ties are all seen.
 inline bool beyond(double enter, float best_t) {
-  return enter - std::abs(enter) * 0x1p-22 > best_t;
+  return enter - std::abs(enter) * 0x1p-22 - 0x1p-126 > best_t;
 }
 
 }  // namespace raymeter
