@@ -174,7 +174,7 @@ Arguments::Arguments(const Spec& spec, std::span<const Parameter> table) : name_
                                               fmt::join(names, ", ")));
     }
   }
-  canonical_ = name_;
+  canonical_ = brief_ = name_;
   for (const auto& p : table) {
     const std::string* given = &p.default_value;
     for (const auto& [name, value] : spec.parameters)
@@ -184,7 +184,9 @@ Arguments::Arguments(const Spec& spec, std::span<const Parameter> table) : name_
     if (!value && given == &p.default_value) value = p.default_value;
     if (!value)
       throw Error(fmt::format("{}: {}='{}' should be {}", spec.name, p.name, *given, what_is_allowed(p)));
-    canonical_ += fmt::format(":{}={}", p.name, escape(*value));
+    const std::string text = fmt::format(":{}={}", p.name, escape(*value));
+    canonical_ += text;
+    if (*value != p.default_value) brief_ += text;
     values_.emplace_back(p.name, std::move(*value));
   }
 }

@@ -58,12 +58,14 @@ class Arguments {
 
   /// The one form that records hold: every parameter, in the table's order, numbers in shortest form.
   const std::string& canonical() const { return canonical_; }
+  /// The canonical form less the parameters that are at their default: what tables show.
+  const std::string& brief() const { return brief_; }
   const std::string& name() const { return name_; }
 
  private:
   std::string name_;
   std::vector<std::pair<std::string, std::string>> values_;
-  std::string canonical_;
+  std::string canonical_, brief_;
 };
 
 /// "integer 1..4096, default 8" and the like: what a user may write.

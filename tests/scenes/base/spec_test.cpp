@@ -43,6 +43,11 @@ TEST(Spec, CanonicalFormHasEveryParameterInTableOrder) {
   EXPECT_EQ(canonical("grid:amount=1e0"), canonical("grid"));
 }
 
+TEST(Spec, BriefFormLeavesDefaultsOut) {
+  EXPECT_EQ(Arguments(parse_spec("grid:mailbox=off:cells=8"), table).brief(), "grid:cells=8");
+  EXPECT_EQ(Arguments(parse_spec("grid"), table).brief(), "grid");
+}
+
 TEST(Spec, EscapesReturn) {
   EXPECT_EQ(canonical("grid:label=a%2Cb%3Ac%3Dd%25"),
             "grid:cells=0:amount=1:mailbox=off:rule=paper:label=a%2Cb%3Ac%3Dd%25");

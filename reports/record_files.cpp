@@ -1,0 +1,128 @@
+#include "reports/record_files.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "scenes/base/error.h"
+
+namespace raymeter {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Record& record) {
+  Json object = Json::object();
+  for (const Column& column : columns())
+    std::visit(
+        [&](auto pointer) {
+          const auto& value = record.*pointer;
+          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Record::Text>) {
+            if (!value.empty()) object[std::string(column.name)] = value;
+          } else if (value) {
+            object[std::string(column.name)] = *value;
+          }
+        },
+        column.member);
+  return object;
+}
+
+Record from_json(const Json& object) {
+  Record record;
+  for (const Column& column : columns()) {
+    const auto found = object.find(std::string(column.name));
+    if (found == object.end()) continue;
+    std::visit(
+        [&](auto pointer) {
+          auto& value = record.*pointer;
+          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Record::Text>)
+            value = found->template get<std::string>();
+          else
+            value = found->template get<typename std::decay_t<decltype(value)>::value_type>();
+        },
+        column.member);
+  }
+  return record;
+}
+
+std::string quoted(std::string text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+std::ofstream open_for_writing(const std::filesystem::path& file, std::ios::openmode mode = std::ios::trunc) {
+  std::ofstream stream(file, std::ios::binary | mode);
+  if (!stream) throw Error(fmt::format("{}: can't be written", file.string()));
+  return stream;
+}
+
+/// Written beside the file and renamed, so that a reader never sees half of it.
+void replace_file(const std::filesystem::path& file, const std::string& content) {
+  const std::filesystem::path temporary = file.string() + ".new";
+  std::ofstream stream = open_for_writing(temporary);
+  stream << content;
+  stream.close();
+  if (!stream) throw Error(fmt::format("{}: can't be written", file.string()));
+  std::filesystem::rename(temporary, file);
+}
+
+}  // namespace
+
+RecordLog::RecordLog(const std::filesystem::path& file) : file_(file) {
+  std::uintmax_t good = 0;
+  if (std::ifstream in(file, std::ios::binary); in) {
+    std::string line;
+    for (std::size_t number = 1; std::getline(in, line); ++number) {
+      if (in.eof()) break;  // no newline: the run was killed while it wrote this line
+      good += line.size() + 1;
+      try {
+        records_.push_back(from_json(Json::parse(line)));
+      } catch (const Json::exception& error) {
+        throw error_at_line(file.string(), number, fmt::format("not a record ({})", error.what()));
+      }
+    }
+    in.close();
+    if (std::filesystem::file_size(file) != good) std::filesystem::resize_file(file, good);
+  }
+  stream_ = open_for_writing(file, std::ios::app);
+}
+
+void RecordLog::append(const Record& record) {
+  stream_ << to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
+  if (!stream_) throw Error(fmt::format("{}: can't be written", file_.string()));
+  records_.push_back(record);
+}
+
+void write_csv(const std::filesystem::path& file, std::span<const Record> records) {
+  std::ostringstream text;
+  const char* separator = "";
+  for (const Column& column : columns()) {
+    text << separator << column.name;
+    separator = ",";
+  }
+  text << '\n';
+  for (const Record& record : records) {
+    separator = "";
+    for (const Column& column : columns()) {
+      text << separator << quoted(column.text(record));
+      separator = ",";
+    }
+    text << '\n';
+  }
+  replace_file(file, text.str());
+}
+
+void write_environment(const std::filesystem::path& file,
+                       std::span<const std::pair<std::string, std::string>> entries) {
+  Json object = Json::object();
+  for (const auto& [name, value] : entries) object[name] = value;
+  replace_file(file, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace raymeter

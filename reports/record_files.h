@@ -1,0 +1,38 @@
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/record.h"
+
+namespace raymeter {
+
+/// records.jsonl: one JSON object a line, keys as the columns, absent values left out. Each record is on disk
+/// as soon as `append` returns, so a killed run keeps all that it finished.
+class RecordLog {
+ public:
+  /// Opens or creates the file, reads what it holds, and cuts off a last line that a killed run left
+  /// unfinished. Throws Error (file, line) on anything else that is no record.
+  explicit RecordLog(const std::filesystem::path& file);
+
+  void append(const Record& record);
+  std::span<const Record> records() const { return records_; }
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  std::vector<Record> records_;
+};
+
+/// records.csv (RFC 4180): a header line of column names, then a line a record. Throws Error when it can't be
+/// written.
+void write_csv(const std::filesystem::path& file, std::span<const Record> records);
+
+/// A flat JSON object of names and texts, in order: environment.json.
+void write_environment(const std::filesystem::path& file,
+                       std::span<const std::pair<std::string, std::string>> entries);
+
+}  // namespace raymeter
