@@ -9,11 +9,12 @@ namespace raymeter {
 ///   The real line origin + t * direction, taken exactly from the ray's floats, meets the primitive, taken
 ///   exactly from its floats, at real numbers t. Each is rounded to the nearest float (ties to even; below
 ///   FLT_MIN in magnitude to 0; beyond FLT_MAX it is no hit). The answer is the least of those floats with
-///   tnear < t <= tfar, or `no_hit`. A ray that is not traceable (ray.h) misses.
+///   tnear < t <= tfar, or `no_hit`. A ray that is not traceable (ray.h) misses, and a primitive with a
+///   number that is not finite is missed. A denormal number, of ray or primitive, counts as zero.
 ///
 /// Computed in double, with exact integer arithmetic wherever a sign or a rounding is not certain, so the
-/// answer does not depend on the machine, the compiler or the caller's flags. Callers may be in any
-/// rounding-relevant mode of denormals (FTZ/DAZ on or off).
+/// answer does not depend on the machine, the compiler, the caller's flags or its mode of denormals (FTZ/DAZ
+/// on or off). The rounding mode must be to nearest.
 
 /// A triangle is closed; a ray coplanar with it misses; a triangle without area is never hit.
 /// Two triangles that share an edge leave no gap: the sign of an edge is a function of its two vertices.

@@ -12,18 +12,6 @@ float in_interval(const Ray& ray, double t) {
 
 }  // namespace
 
-float decide(const Ray& ray, const Triangle& triangle) {
-  if (!is_traceable(ray)) return no_hit;
-  const Vec3d o = to_double(ray.origin), d = to_double(ray.direction);
-  const Vec3d a = to_double(triangle.a) - o, b = to_double(triangle.b) - o, c = to_double(triangle.c) - o;
-  const double u = dot(d, cross(c, b)), v = dot(d, cross(a, c)), w = dot(d, cross(b, a));
-  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return no_hit;
-  const Vec3d n = cross(b - a, c - a);
-  const double det = dot(d, n);
-  if (det == 0) return no_hit;
-  return in_interval(ray, dot(a, n) / det);
-}
-
 float decide(const Ray& ray, const Quadric& q) {
   if (!is_traceable(ray)) return no_hit;
   const Vec3d w = to_double(ray.origin) - to_double(q.base), d = to_double(ray.direction);
