@@ -107,20 +107,6 @@ void check_materials(SceneData& data) {
   }
 }
 
-void check_camera(const SceneData& data) {
-  const Camera& camera = *data.camera;
-  if (!is_finite(camera.from) || !is_finite(camera.at) || !is_finite(camera.up))
-    throw Error(fmt::format("{}: the camera is not finite", data.name));
-  if (!(camera.angle > 0 && camera.angle < 180))
-    throw Error(fmt::format("{}: the camera's angle is {}, it must lie between 0 and 180 degrees", data.name,
-                            camera.angle));
-  const Vec3d view = to_double(camera.at) - to_double(camera.from);
-  if (view == Vec3d{})
-    throw Error(fmt::format("{}: the camera looks from the point that it looks at", data.name));
-  if (length(cross((1 / length(view)) * view, to_double(camera.up))) <= 1e-9 * length(to_double(camera.up)))
-    throw Error(fmt::format("{}: the camera's up vector is parallel to its view direction", data.name));
-}
-
 std::uint64_t hash_of(const SceneData& data) {
   Hasher hasher;
   hasher.array(std::span<const Vec3>(data.vertices));
@@ -151,6 +137,19 @@ std::uint64_t hash_of(const SceneData& data) {
 
 }  // namespace
 
+void check_camera(const Camera& camera, std::string_view scene) {
+  if (!is_finite(camera.from) || !is_finite(camera.at) || !is_finite(camera.up))
+    throw Error(fmt::format("{}: the camera is not finite", scene));
+  if (!(camera.angle > 0 && camera.angle < 180))
+    throw Error(fmt::format("{}: the camera's angle is {}, it must lie between 0 and 180 degrees", scene,
+                            camera.angle));
+  const Vec3d view = to_double(camera.at) - to_double(camera.from);
+  if (view == Vec3d{})
+    throw Error(fmt::format("{}: the camera looks from the point that it looks at", scene));
+  if (length(cross((1 / length(view)) * view, to_double(camera.up))) <= 1e-9 * length(to_double(camera.up)))
+    throw Error(fmt::format("{}: the camera's up vector is parallel to its view direction", scene));
+}
+
 Scene::Scene(SceneData data) : data_(std::move(data)) {
   if (data_.triangles.size() + data_.quadrics.size() >= no_primitive)
     throw Error(fmt::format("{}: more primitives than can be numbered", data_.name));
@@ -176,7 +175,7 @@ Scene::Scene(SceneData data) : data_(std::move(data)) {
     check_finite(data_, data_.lights[i].position, "light", i);
     flush(data_.lights[i].position);
   }
-  check_camera(data_);
+  check_camera(*data_.camera, data_.name);
   flush(data_.camera->from);
   flush(data_.camera->at);
   flush(data_.camera->up);

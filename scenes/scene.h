@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenes/geometry/bounds.h"
@@ -37,6 +38,10 @@ struct Camera {
   float angle = 45;
   std::uint32_t width = 320, height = 240;
 };
+
+/// Throws an Error that names `scene` when the camera is not finite or shows nothing: an angle outside
+/// 0 .. 180 degrees, no view direction, an up vector along it.
+void check_camera(const Camera& camera, std::string_view scene);
 
 /// What a reader or a generator fills in; `Scene` checks it. Primitives are numbered: first all triangles in
 /// order, then all quadrics.
