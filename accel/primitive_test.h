@@ -48,4 +48,20 @@ inline bool test_any(const Scene& scene, std::uint32_t primitive, const FilterRa
   return decide(ray.ray, quadric) != no_hit;
 }
 
+/// Every primitive tested: for rays that a structure can't walk (walk_space.h).
+template <class Probe>
+Hit closest_of_all(const Scene& scene, const Ray& ray, Probe& probe) {
+  const FilterRay filter(ray);
+  Hit best;
+  for (std::uint32_t p = 0; p < scene.primitive_count(); ++p) test_closest(scene, p, filter, best, probe);
+  return best;
+}
+template <class Probe>
+bool any_of_all(const Scene& scene, const Ray& ray, Probe& probe) {
+  const FilterRay filter(ray);
+  for (std::uint32_t p = 0; p < scene.primitive_count(); ++p)
+    if (test_any(scene, p, filter, probe)) return true;
+  return false;
+}
+
 }  // namespace raymeter

@@ -1,7 +1,11 @@
 #include "accel/registry.h"
+#include "accel/uniform_grid.h"
 
 namespace raymeter {
 
-void register_accel(Registry&) {}
+void register_accel(Registry& registry) {
+  registry.add(grid_kind());
+  registry.add(tunable_grid_kind());
+}
 
 }  // namespace raymeter

@@ -2,14 +2,19 @@
 // What every walk of a ray through a subdivided box has in common, and why no walk here loses a hit.
 //
 // All walks compute in double, from planes whose positions are functions of integer cell indices (never
-// accumulated). A plane's crossing (plane - o) / d then has a relative error of 3 ulps, so at every t each
-// coordinate of the ray's point is within 4 * 2^-53 * (distance from the origin) of the cell that the walk
-// believes to be in at that t. `margin` is larger than that for every ray that starts within 2^16 diagonals
-// of the box. So it suffices that a primitive is registered in every cell whose box, grown by `margin` on all
-// sides, meets the primitive: then the cell the walk is in at the hit's t lists the primitive. Rays from
-// farther away are `too_far` and must be answered without a walk, by testing every primitive.
+// accumulated). A plane's crossing (plane - o) / d is then wrong by a few roundings of the distances in it,
+// so at every t each coordinate of the ray's point is within 2^-51 * (distance from the ray's origin + extent
+// of the box) of the cell that the walk believes to be in at that t. `margin` is larger than that for every
+// ray that starts within 2^16 diagonals of the box. So it suffices that a primitive is registered in every
+// cell whose box, grown by `margin` on all sides, meets the primitive: then the cell the walk is in at the
+// hit's real t lists the primitive. Rays from farther away are `too_far` and must be answered without a walk,
+// by testing every primitive.
+//
+// The t of a hit is that real t rounded to float (decide.h). What a walk may skip is decided by the float, so
+// every comparison of a walk's t with a float one leaves room for the rounding: see `latest`.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scenes/geometry/bounds.h"
 #include "scenes/geometry/ray.h"
@@ -60,11 +65,16 @@ struct WalkInterval {
   bool empty() const { return !(enter <= leave); }
 };
 
-/// The part of the ray's [tnear, tfar], widened by the rounding of a hit's t, inside the box low..high, which
-/// must have been grown by a margin: its own rounding is below that. Empty where the ray misses.
+/// No hit whose float t is `t` or less lies, as a real number, beyond this: room for its rounding (2^-24
+/// relative) and, near 0, for flushing it.
+inline double latest(float t) {
+  return double(t) + std::abs(double(t)) * 0x1p-22 + double(std::numeric_limits<float>::min());
+}
+
+/// The part of the ray inside the box low..high where hits in its interval may lie. The box must have been
+/// grown by a margin: the rounding here is below that. Empty where the ray misses.
 inline WalkInterval clip(const WalkRay& walk, const Ray& ray, const Vec3d& low, const Vec3d& high) {
-  // A hit somewhat beyond tfar counts when its float t is rounded to tfar (or to 0, below FLT_MIN).
-  WalkInterval interval{ray.tnear, ray.tfar + std::abs(double(ray.tfar)) * 0x1p-22 + 0x1p-126};
+  WalkInterval interval{double(ray.tnear) - double(std::numeric_limits<float>::min()), latest(ray.tfar)};
   for (int axis = 0; axis < 3; ++axis) {
     if (walk.direction[axis] == 0) {
       if (walk.origin[axis] < low[axis] || walk.origin[axis] > high[axis]) return {1, 0};
@@ -86,11 +96,9 @@ inline bool too_far(const WalkRay& walk, const WalkSpace& space) {
   return distance > space.far_limit;
 }
 
-/// Whether nothing entered at t = `enter` or later can beat a hit at `best_t`: strictly beyond it, by more
-/// than the rounding of the crossing and of the hit's float t together (2^-24 relative, and all of a t below
-/// FLT_MIN), so that ties are all seen.
+/// Whether nothing entered at t = `enter` or later can beat a hit at `best_t`, nor tie with it.
 inline bool beyond(double enter, float best_t) {
-  return enter - std::abs(enter) * 0x1p-22 - 0x1p-126 > best_t;
+  return enter > latest(best_t);
 }
 
 }  // namespace raymeter

@@ -181,7 +181,7 @@ Arguments::Arguments(const Spec& spec, std::span<const Parameter> table) : name_
       if (name == p.name) given = &value;
     auto value = canonical_value(p, *given);
     // A default may stand outside the range: it then means "not set".
-    if (!value && given == &p.default_value) value = p.default_value;
+    if (!value && *given == p.default_value) value = p.default_value;
     if (!value)
       throw Error(fmt::format("{}: {}='{}' should be {}", spec.name, p.name, *given, what_is_allowed(p)));
     const std::string text = fmt::format(":{}={}", p.name, escape(*value));

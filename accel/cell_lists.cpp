@@ -1,0 +1,36 @@
+#include "accel/cell_lists.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenes/base/error.h"
+
+namespace raymeter {
+
+std::uint64_t CellLists::empty_cells() const {
+  std::uint64_t empty = 0;
+  for (std::uint64_t c = 0; c < cells(); ++c) empty += offsets_[c] == offsets_[c + 1];
+  return empty;
+}
+
+std::uint64_t CellLists::counts_to_beginnings() {
+  std::uint64_t total = 0;
+  for (auto& offset : offsets_) {
+    const std::uint32_t count = offset;
+    offset = static_cast<std::uint32_t>(total);
+    total += count;
+  }
+  if (total > std::numeric_limits<std::uint32_t>::max())
+    throw Error(fmt::format(
+        "{} references from cells to primitives are more than 32 bits can number; choose fewer cells",
+        total));
+  return total;
+}
+
+void CellLists::ends_to_beginnings() {
+  std::copy_backward(offsets_.begin(), offsets_.end() - 1, offsets_.end());
+  offsets_.front() = 0;
+}
+
+}  // namespace raymeter

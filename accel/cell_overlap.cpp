@@ -1,0 +1,39 @@
+#include "accel/cell_overlap.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raymeter {
+
+TriangleOverlap::TriangleOverlap(const Triangle& triangle, const Vec3d& half, double slack)
+    : corner_(to_double(triangle.a)) {
+  // All relative to the first vertex, so that a triangle far from 0 loses nothing.
+  const Vec3d b = to_double(triangle.b) - corner_, c = to_double(triangle.c) - corner_;
+  const auto set = [&](std::size_t i, const Vec3d& axis) {
+    const double to_b = dot(axis, b), to_c = dot(axis, c);
+    const double reach = std::abs(axis.x) * (half.x + slack) + std::abs(axis.y) * (half.y + slack) +
+                         std::abs(axis.z) * (half.z + slack);
+    slabs_[i] = {axis, std::min({0.0, to_b, to_c}) - reach, std::max({0.0, to_b, to_c}) + reach};
+  };
+  // The plane of the triangle first: it separates most often.
+  set(0, cross(b, c));
+  std::size_t i = 1;
+  for (const Vec3d& e : {b, c, c - b}) {
+    set(i++, {0, -e.z, e.y});
+    set(i++, {e.z, 0, -e.x});
+    set(i++, {-e.y, e.x, 0});
+  }
+}
+
+bool SphereOverlap::meets(const Vec3d& centre) const {
+  double nearest = 0, farthest = 0;  // squared distances from the sphere's centre to the grown box
+  for (int axis = 0; axis < 3; ++axis) {
+    const double distance = std::abs(centre[axis] - centre_[axis]), reach = half_[axis] + slack_;
+    const double gap = std::max(0.0, distance - reach);
+    nearest += gap * gap;
+    farthest += (distance + reach) * (distance + reach);
+  }
+  return nearest <= radius_ * radius_ && radius_ * radius_ <= farthest;
+}
+
+}  // namespace raymeter

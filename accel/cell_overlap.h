@@ -1,0 +1,106 @@
+#pragma once
+// Which cells of a grid a primitive must be registered in. All tests here may say yes too often, never no
+// wrongly: a cell counts as met when the primitive meets its box grown by the margin of walk_space.h.
+#include <array>
+#include <cstdint>
+
+#include "accel/cell_grid.h"
+#include "scenes/geometry/primitives.h"
+#include "scenes/scene.h"
+
+namespace raymeter {
+
+/// How closely primitives are registered.
+enum class Fit : std::uint8_t {
+  box,    ///< in every cell that their bounding box meets
+  exact,  ///< only in cells that they meet themselves: triangles and spheres; others as `box`
+};
+
+/// The surface of a triangle against boxes of one size: the separating axes of Akenine-Moeller, "Fast 3D
+/// Triangle-Box Overlap Testing", 2001, except the three of the box itself, with the triangle's part of the
+/// work done once. Any vector may be tried as a separating axis, so rounding in the axes does no harm; that
+/// of the projections is far below `slack`.
+class TriangleOverlap {
+ public:
+  /// `half`: half the size of the boxes. `slack` > 0: boxes nearer than that count as met.
+  TriangleOverlap(const Triangle& triangle, const Vec3d& half, double slack);
+  /// Assumes that the triangle's bounding box meets the box about `centre`.
+  bool meets(const Vec3d& centre) const {
+    const Vec3d p = centre - corner_;
+    for (const Slab& slab : slabs_) {
+      const double along = dot(slab.axis, p);
+      if (along < slab.low || along > slab.high) return false;
+    }
+    return true;
+  }
+
+ private:
+  struct Slab {
+    Vec3d axis;
+    double low, high;  // where the box's centre must lie along the axis, from corner_
+  };
+  Vec3d corner_;
+  std::array<Slab, 10> slabs_;
+};
+
+/// The surface of a sphere against boxes of one size: not those wholly outside, nor those wholly inside.
+class SphereOverlap {
+ public:
+  SphereOverlap(const Quadric& sphere, const Vec3d& half, double slack)
+      : centre_(to_double(sphere.base)), radius_(sphere.base_radius), half_(half), slack_(slack) {}
+  bool meets(const Vec3d& centre) const;
+
+ private:
+  Vec3d centre_;
+  double radius_;
+  Vec3d half_;
+  double slack_;
+};
+
+/// Layers first..last of a grid on each axis.
+struct CellRange {
+  std::array<std::uint32_t, 3> first, last;
+};
+
+/// The cells whose boxes, grown by `margin`, meet `box`.
+inline CellRange cells_of_box(const CellGrid& grid, const Bounds& box, double margin) {
+  CellRange range;
+  for (int axis = 0; axis < 3; ++axis) {
+    range.first[axis] = grid.layer(axis, box.low[axis] - margin);
+    range.last[axis] = grid.layer(axis, box.high[axis] + margin);
+  }
+  return range;
+}
+
+/// Calls visit(cell) for each cell of the range whose centre satisfies `meets`.
+template <class Meets, class Visit>
+void for_each_cell(const CellGrid& grid, const CellRange& range, const Meets& meets, const Visit& visit) {
+  for (std::uint32_t k = range.first[2]; k <= range.last[2]; ++k)
+    for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j)
+      for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
+        if (meets(Vec3d{grid.plane(0, i + 0.5), grid.plane(1, j + 0.5), grid.plane(2, k + 0.5)}))
+          visit(grid.cell(i, j, k));
+}
+
+/// Calls visit(cell) once for each cell in which `primitive` is to be registered. Triangles without area,
+/// which are never hit, are registered like any other: counts of references are those of the rule.
+template <class Visit>
+void for_each_cell_of(const Scene& scene, std::uint32_t primitive, const CellGrid& grid, double margin,
+                      Fit fit, const Visit& visit) {
+  const CellRange range = cells_of_box(grid, scene.bounds_of(primitive), margin);
+  const auto any = [](const Vec3d&) { return true; };
+  if (fit == Fit::box || range.first == range.last) return for_each_cell(grid, range, any, visit);
+  // Twice the margin: once for the walk, once for the rounding of the overlap tests.
+  const Vec3d half = 0.5 * grid.size;
+  const double slack = 2 * margin;
+  if (scene.is_triangle(primitive)) {
+    const TriangleOverlap overlap(scene.triangle(primitive), half, slack);
+    return for_each_cell(grid, range, [&](const Vec3d& centre) { return overlap.meets(centre); }, visit);
+  }
+  const Quadric& quadric = scene.quadric(primitive);
+  if (quadric.kind != QuadricKind::sphere) return for_each_cell(grid, range, any, visit);
+  const SphereOverlap overlap(quadric, half, slack);
+  for_each_cell(grid, range, [&](const Vec3d& centre) { return overlap.meets(centre); }, visit);
+}
+
+}  // namespace raymeter
