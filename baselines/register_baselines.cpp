@@ -1,10 +1,12 @@
 #include "baselines/register_baselines.h"
 
 #include "baselines/brute_force.h"
+#include "baselines/embree.h"
 
 namespace raymeter {
 
 void register_baselines(Registry& registry) {
+  registry.add(embree_kind());
   registry.add(brute_force_kind());
 }
 

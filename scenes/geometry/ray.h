@@ -24,6 +24,11 @@ inline bool is_traceable(const Ray& ray) {
 }
 
 inline constexpr std::uint32_t no_primitive = 0xffffffffu;
+/// In place of a primitive: a foreign structure does not accept this ray, though it may hit something. No own
+/// structure ever answers so; it is graded `not_given`.
+inline constexpr std::uint32_t not_answered = 0xfffffffeu;
+/// The same for an any-hit query, in place of 0 or 1.
+inline constexpr std::uint8_t occlusion_not_answered = 2;
 /// What `decide` returns for a miss, and the t of a Hit that is none.
 inline constexpr float no_hit = std::numeric_limits<float>::infinity();
 
@@ -33,7 +38,7 @@ struct Hit {
   float t = no_hit;
   std::uint32_t primitive = no_primitive;
 
-  bool found() const { return primitive != no_primitive; }
+  bool found() const { return primitive < not_answered; }
   friend bool operator==(const Hit&, const Hit&) = default;
   /// The order of hits along a ray: by t, then by primitive.
   friend bool operator<(const Hit& a, const Hit& b) {
