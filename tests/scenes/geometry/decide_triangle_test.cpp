@@ -31,7 +31,7 @@ std::string show(const Ray& ray, const Triangle& triangle) {
 TEST(DecideTriangle, IsTheExactAnswerRounded) {
   Random random(1);
   int hits = 0;
-  for (int i = 0; i < 120000; ++i) {
+  for (int i = 0; i < 100000; ++i) {
     const auto style = adversary::styles[i % std::size(adversary::styles)];
     const Triangle triangle = adversary::triangle(random, style);
     Ray ray = adversary::ray_towards(random, style, adversary::point_on(random, triangle));
