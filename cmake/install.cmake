@@ -1,0 +1,26 @@
+# What `cmake --install` lays down: the command, the library, its headers under include/raymeter, and the package
+# files with which find_package(raymeter) gives raymeter::raymeter.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/raymeter)
+set_target_properties(raymeter PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+target_include_directories(raymeter PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/raymeter>)
+
+install(TARGETS raymeter EXPORT raymeter_targets)
+foreach(folder scenes accel baselines harness reports)
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raymeter FILES_MATCHING PATTERN *.h)
+endforeach()
+install(EXPORT raymeter_targets FILE raymeter-targets.cmake NAMESPACE raymeter:: DESTINATION ${package_folder})
+
+configure_package_config_file(cmake/raymeter-config.cmake.in raymeter-config.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(raymeter-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/raymeter-config.cmake ${PROJECT_BINARY_DIR}/raymeter-config-version.cmake
+        DESTINATION ${package_folder})
+
+if(TARGET raymeter_command)
+  # Finds the library from where it lies, so that an installed tree may be moved.
+  file(RELATIVE_PATH library_from_command /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(raymeter_command PROPERTIES INSTALL_RPATH $ORIGIN/${library_from_command})
+  install(TARGETS raymeter_command)
+endif()
