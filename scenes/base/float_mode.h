@@ -11,10 +11,12 @@ namespace raymeter {
 class FlushDenormals {
  public:
 #if defined(__SSE__)
+  static constexpr bool available = true;
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | ftz_daz); }
   ~FlushDenormals() { _mm_setcsr(saved_); }
 #else
-  FlushDenormals() = default;
+  static constexpr bool available = false;
+  FlushDenormals() {}
 #endif
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;

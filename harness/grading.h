@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "harness/truth.h"
+
+namespace raymeter {
+
+/// How an answer stands to the truth, from harmless to bad. An answer gets the first that is true of it; one
+/// that contradicts the truth about several primitives gets the last of theirs. Formulas: dispute.h.
+enum class Grade : std::uint8_t {
+  right,         ///< bit-identical
+  within_bound,  ///< the t of a float kernel, within its error bound
+  tie,           ///< another primitive, whose exact t is within 2 ulp
+  edge,          ///< a primitive passed within 2^-20 (barycentric) of its edge
+  grazing,       ///< a primitive passed along its surface
+  at_limit,      ///< a hit as near to tnear or tfar as the kernel's error
+  degenerate,    ///< a triangle thinner than rounding
+  wrong,         ///< contradicts the truth, and nothing above explains it
+  not_given,     ///< the structure did not answer
+  unexplained,   ///< not examined: the truth is unknown, or the budget had run out
+};
+inline constexpr std::size_t grade_count = 10;
+std::string_view name_of(Grade grade);
+
+/// How many rays got each grade. They sum to the rays of the batch.
+struct Grades {
+  std::uint64_t right = 0, within_bound = 0, tie = 0, edge = 0, grazing = 0, at_limit = 0, degenerate = 0,
+                wrong = 0, not_given = 0, unexplained = 0;
+
+  std::uint64_t& operator[](Grade grade);
+  std::uint64_t operator[](Grade grade) const;
+  std::uint64_t total() const;
+  /// Nothing wrong, withheld or unexplained: what an own structure must be.
+  bool faultless() const { return wrong == 0 && not_given == 0 && unexplained == 0; }
+};
+
+/// Grades every answer. An exact row is right or wrong (or not given, or of unknown truth). The differences
+/// of a within_bound row are explained primitive by primitive, from `decide` over the whole scene; those
+/// beyond `test_budget` ray-primitive tests are `unexplained`.
+Grades grade(const Scene& scene, const RayBatch& batch, const Truth& truth, const Row& row,
+             double test_budget = 2.5e9);
+
+}  // namespace raymeter

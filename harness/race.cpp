@@ -1,0 +1,110 @@
+#include "harness/race.h"
+
+#include <sched.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace raymeter {
+namespace {
+
+/// Holds the calling thread on the CPU it is running on, while it lives. Harmless where that is not allowed.
+class PinnedThread {
+ public:
+  PinnedThread() {
+    // TBB counts the CPUs that it may use only once: it must not do so while this thread has but one.
+    tbb::info::default_concurrency();
+    const int cpu = sched_getcpu();
+    if (cpu < 0 || cpu >= CPU_SETSIZE || sched_getaffinity(0, sizeof saved_, &saved_) != 0) return;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(cpu, &one);
+    pinned_ = sched_setaffinity(0, sizeof one, &one) == 0;
+  }
+  ~PinnedThread() {
+    if (pinned_) sched_setaffinity(0, sizeof saved_, &saved_);
+  }
+  PinnedThread(const PinnedThread&) = delete;
+  PinnedThread& operator=(const PinnedThread&) = delete;
+  bool pinned() const { return pinned_; }
+
+ private:
+  cpu_set_t saved_{};
+  bool pinned_ = false;
+};
+
+/// Traces the batch as often as its side's repetitions say; returns rays per second.
+double run(const Structure& structure, const BatchView& batch, RaceSide& side, unsigned threads) {
+  double seconds = 0;
+  for (unsigned i = 0; i < side.repetitions; ++i) seconds += trace(structure, batch, side.answers, threads);
+  // A clock may stand still over a handful of rays.
+  return static_cast<double>(batch.rays.size()) * side.repetitions / std::max(seconds, 1e-9);
+}
+
+/// Traces until `min_seconds` have been measured, and chooses the repetitions so that a round lasts as long.
+void warm_up(const Structure& structure, const BatchView& batch, RaceSide& side,
+             const RaceSettings& settings) {
+  constexpr unsigned most_passes = 10000;
+  double total = 0, fastest = std::numeric_limits<double>::infinity();
+  unsigned passes = 0;
+  do {
+    const double seconds = trace(structure, batch, side.answers, settings.threads);
+    total += seconds;
+    fastest = std::min(fastest, seconds);
+  } while (total < settings.min_round_seconds && ++passes < most_passes);
+  const double wanted = std::ceil(settings.min_round_seconds / std::max(fastest, 1e-9));
+  side.repetitions = static_cast<unsigned>(std::clamp(wanted, 1.0, double{most_passes}));
+}
+
+}  // namespace
+
+RaceResult race(Structure& baseline, Structure& structure, const RayBatch& batch,
+                const RaceSettings& settings) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+
+  RaceResult result;
+  result.threads = std::max(1u, settings.threads);
+  const BatchView view = batch.view();
+  baseline.prepare(view);
+  structure.prepare(view);
+
+  const auto run_rounds = [&] {
+    if (view.rays.empty()) return;
+    warm_up(baseline, view, result.baseline, settings);
+    warm_up(structure, view, result.structure, settings);
+    for (unsigned round = 0; round < settings.rounds; ++round) {
+      if (round >= 3 && elapsed() >= settings.time_budget) break;
+      double ours = 0, theirs = 0;
+      for (const bool baseline_turn : {round % 2 == 0, round % 2 != 0}) {
+        if (baseline_turn)
+          theirs = run(baseline, view, result.baseline, result.threads);
+        else
+          ours = run(structure, view, result.structure, result.threads);
+      }
+      result.baseline.rays_per_second.push_back(theirs);
+      result.structure.rays_per_second.push_back(ours);
+      result.ratios.push_back(ours / theirs);
+    }
+  };
+  if (result.threads == 1) {
+    const PinnedThread pin;
+    result.pinned = pin.pinned();
+    run_rounds();
+  } else {
+    run_rounds();
+  }
+
+  result.baseline.median_rays_per_second = median(result.baseline.rays_per_second);
+  result.structure.median_rays_per_second = median(result.structure.rays_per_second);
+  result.ratio = median(result.ratios);
+  result.ratio_interval = median_interval(result.ratios);
+  result.spread = relative_spread(result.ratios);
+  result.noisy = result.spread > noisy_spread;
+  return result;
+}
+
+}  // namespace raymeter

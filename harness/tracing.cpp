@@ -1,0 +1,108 @@
+#include "harness/tracing.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <ctime>
+#include <mutex>
+
+#include "scenes/base/float_mode.h"
+#include "scenes/base/hash.h"
+
+namespace raymeter {
+namespace {
+
+double now(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+void make_room(BatchAnswers& answers, const BatchView& batch) {
+  const bool closest = batch.query == QueryKind::closest;
+  answers.hits.resize(closest ? batch.rays.size() : 0);
+  answers.occluded.resize(closest ? 0 : batch.rays.size());
+}
+
+/// Calls work(chunk, first, count) for every chunk of the batch, each once.
+template <class Work>
+void for_chunks(const BatchView& batch, unsigned threads, const Work& work) {
+  const std::size_t rays = batch.rays.size();
+  // Eight chunks a thread balance the load; below 256 rays a chunk costs more than it helps.
+  const std::size_t fine = std::max<std::size_t>(256, rays / (std::size_t{8} * threads));
+  const std::size_t size = threads > 1 ? std::min(chunk_rays, fine) : chunk_rays;
+  const auto do_chunk = [&](std::size_t index) {
+    const FlushDenormals mode;
+    const std::size_t first = index * size, count = std::min(size, rays - first);
+    BatchView chunk = batch;
+    chunk.rays = batch.rays.subspan(first, count);
+    chunk.first = batch.first + first;
+    work(chunk, first, count);
+  };
+  const std::size_t chunks = (rays + size - 1) / size;
+  if (threads <= 1) {
+    for (std::size_t i = 0; i < chunks; ++i) do_chunk(i);
+    return;
+  }
+  // As many threads as asked for, even where there are fewer CPUs.
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, chunks, do_chunk, tbb::simple_partitioner()); });
+}
+
+}  // namespace
+
+std::uint64_t hit_hash(const BatchAnswers& answers) {
+  static_assert(sizeof(Hit) == sizeof(float) + sizeof(std::uint32_t));
+  Hasher hasher;
+  hasher.array(std::span<const Hit>(answers.hits));
+  hasher.array(std::span<const std::uint8_t>(answers.occluded));
+  return hasher.digest();
+}
+
+std::uint64_t count_hits(const BatchAnswers& answers) {
+  return static_cast<std::uint64_t>(
+      std::count_if(answers.hits.begin(), answers.hits.end(), [](const Hit& hit) { return hit.found(); }) +
+      std::count(answers.occluded.begin(), answers.occluded.end(), std::uint8_t{1}));
+}
+
+double trace(const Structure& structure, const BatchView& batch, BatchAnswers& answers, unsigned threads) {
+  make_room(answers, batch);
+  const clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
+  const double start = now(clock);
+  for_chunks(batch, threads, [&](const BatchView& chunk, std::size_t first, std::size_t rays) {
+    if (batch.query == QueryKind::closest)
+      structure.trace_closest(chunk, std::span(answers.hits).subspan(first, rays));
+    else
+      structure.trace_any(chunk, std::span(answers.occluded).subspan(first, rays));
+  });
+  return now(clock) - start;
+}
+
+const char* clock_name(unsigned threads) {
+  return threads > 1 ? "wall-clock time" : "thread CPU time";
+}
+
+CounterTotals count(const Structure& structure, const BatchView& batch, BatchAnswers& answers,
+                    unsigned threads) {
+  make_room(answers, batch);
+  CounterTotals totals;
+  std::mutex totals_mutex;
+  for_chunks(batch, threads, [&](const BatchView& chunk, std::size_t first, std::size_t rays) {
+    std::vector<RayCounters> counters(rays);
+    if (batch.query == QueryKind::closest)
+      structure.count_closest(chunk, std::span(answers.hits).subspan(first, rays), counters);
+    else
+      structure.count_any(chunk, std::span(answers.occluded).subspan(first, rays), counters);
+    // Sums of whole numbers: the order in which chunks arrive does not matter.
+    const std::lock_guard lock(totals_mutex);
+    totals.add(counters);
+  });
+  return totals;
+}
+
+}  // namespace raymeter

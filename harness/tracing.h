@@ -1,0 +1,43 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "accel/structure.h"
+#include "harness/counters.h"
+
+namespace raymeter {
+
+/// What one structure answered on one whole batch: `hits` of a closest-hit batch, `occluded` of an any-hit
+/// batch; the other one is empty.
+struct BatchAnswers {
+  std::vector<Hit> hits;
+  std::vector<std::uint8_t> occluded;
+
+  std::size_t size() const { return hits.size() + occluded.size(); }
+  friend bool operator==(const BatchAnswers&, const BatchAnswers&) = default;
+};
+
+/// Of (t, primitive) of every ray in order, t by its bits; or of the occluded bytes.
+std::uint64_t hit_hash(const BatchAnswers& answers);
+
+/// How many rays hit something.
+std::uint64_t count_hits(const BatchAnswers& answers);
+
+/// The most rays in one call of a structure. Batches on several threads are cut finer, so that all have work.
+inline constexpr std::size_t chunk_rays = std::size_t{1} << 16u;
+
+/// Traces all rays of `batch` chunk by chunk with denormals flushed, on this thread (threads = 1) or on
+/// `threads` of them, and returns the seconds that it took: CPU time of this thread for one thread,
+/// wall-clock time for more (see `clock_name`). Making room for the answers is not timed. `prepare` is the
+/// caller's affair.
+double trace(const Structure& structure, const BatchView& batch, BatchAnswers& answers, unsigned threads = 1);
+
+/// "thread CPU time" or "wall-clock time": what `trace` measures on that many threads.
+const char* clock_name(unsigned threads);
+
+/// The counted pass: the same answers, with the counters of all rays together. The structure must count.
+CounterTotals count(const Structure& structure, const BatchView& batch, BatchAnswers& answers,
+                    unsigned threads = 1);
+
+}  // namespace raymeter

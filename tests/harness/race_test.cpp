@@ -1,0 +1,121 @@
+#include "harness/race.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <cmath>
+
+#include "tests/harness/test_scenes.h"
+
+namespace raymeter {
+namespace {
+
+void expect_sound(const RaceResult& result) {
+  EXPECT_GT(result.ratio, 0);
+  EXPECT_LE(result.ratio_interval.low, result.ratio);
+  EXPECT_GE(result.ratio_interval.high, result.ratio);
+  EXPECT_GE(result.spread, 0);
+  EXPECT_EQ(result.noisy, result.spread > noisy_spread);
+  EXPECT_EQ(result.baseline.rays_per_second.size(), result.rounds());
+  EXPECT_EQ(result.structure.rays_per_second.size(), result.rounds());
+  for (unsigned i = 0; i < result.rounds(); ++i)
+    EXPECT_DOUBLE_EQ(result.ratios[i],
+                     result.structure.rays_per_second[i] / result.baseline.rays_per_second[i]);
+}
+
+TEST(Race, AgainstItselfIsSound) {
+  const Scene scene = random_scene(60);
+  const auto structure = build_brute_force(scene);
+  const RayBatch batch = random_batch(2000, QueryKind::closest);
+  cpu_set_t before{}, after{};
+  sched_getaffinity(0, sizeof before, &before);
+  RaceSettings settings;
+  settings.min_round_seconds = 0.005;
+  for (const unsigned threads : {1u, 2u}) {
+    settings.threads = threads;
+    const RaceResult result = race(*structure, *structure, batch, settings);
+    expect_sound(result);
+    EXPECT_EQ(result.rounds(), 5u);
+    EXPECT_EQ(result.threads, threads);
+    EXPECT_FALSE(threads > 1 && result.pinned);
+    // The answers of the timed passes are there to be hashed and graded.
+    BatchAnswers expected;
+    trace(*structure, batch.view(), expected);
+    EXPECT_EQ(result.structure.answers, expected);
+    EXPECT_EQ(result.baseline.answers, expected);
+  }
+  sched_getaffinity(0, sizeof after, &after);
+  EXPECT_TRUE(CPU_EQUAL(&before, &after));
+}
+
+TEST(Race, RepeatsShortBatches) {
+  const Scene scene = random_scene(5);
+  const auto structure = build_brute_force(scene);
+  const RayBatch batch = random_batch(10, QueryKind::any);
+  RaceSettings settings;
+  settings.rounds = 3;
+  settings.min_round_seconds = 0.002;
+  const RaceResult result = race(*structure, *structure, batch, settings);
+  expect_sound(result);
+  EXPECT_GT(result.baseline.repetitions, 10u);
+  EXPECT_GT(result.structure.repetitions, 10u);
+}
+
+TEST(Race, StopsAtItsBudgetButNotBeforeThreeRounds) {
+  const Scene scene = random_scene(5);
+  const auto structure = build_brute_force(scene);
+  const RayBatch batch = random_batch(10, QueryKind::closest);
+  RaceSettings settings;
+  settings.rounds = 50;
+  settings.min_round_seconds = 0.001;
+  settings.time_budget = 0;
+  EXPECT_EQ(race(*structure, *structure, batch, settings).rounds(), 3u);
+  settings.rounds = 2;
+  EXPECT_EQ(race(*structure, *structure, batch, settings).rounds(), 2u);
+}
+
+TEST(Race, OfNoRaysHasNoRounds) {
+  const Scene scene = random_scene(5);
+  const auto structure = build_brute_force(scene);
+  const RaceResult result = race(*structure, *structure, random_batch(0, QueryKind::closest), {});
+  EXPECT_EQ(result.rounds(), 0u);
+  EXPECT_TRUE(std::isnan(result.ratio));
+  EXPECT_FALSE(result.noisy);
+}
+
+/// Both runners write who is tracing into one list.
+class Runner final : public Structure {
+ public:
+  Runner(char name, std::string& order) : name_(name), order_(order) {}
+  void trace_closest(const BatchView&, std::span<Hit>) const override {
+    if (order_.empty() || order_.back() != name_) order_ += name_;
+    volatile double work = 1;
+    for (int i = 0; i < 100000; ++i) work = work * 1.0000001;
+  }
+  void trace_any(const BatchView&, std::span<std::uint8_t>) const override {}
+  void count_closest(const BatchView&, std::span<Hit>, std::span<RayCounters>) const override {}
+  void count_any(const BatchView&, std::span<std::uint8_t>, std::span<RayCounters>) const override {}
+  void prepare(const BatchView& batch) override { prepared = batch.rays.size(); }
+  StructureStats stats() const override { return {}; }
+  std::size_t prepared = 0;
+
+ private:
+  char name_;
+  std::string& order_;
+};
+
+TEST(Race, AlternatesWhoBeginsAndPreparesBoth) {
+  std::string order;
+  Runner baseline('b', order), structure('s', order);
+  RaceSettings settings;
+  settings.rounds = 4;
+  settings.min_round_seconds = 0;
+  race(baseline, structure, random_batch(10, QueryKind::closest), settings);
+  // Warm-up b s, then b s, s b, b s, s b: neighbours of the same name are written once.
+  EXPECT_EQ(order, "bsbsbsb");
+  EXPECT_EQ(baseline.prepared, 10u);
+  EXPECT_EQ(structure.prepared, 10u);
+}
+
+}  // namespace
+}  // namespace raymeter
