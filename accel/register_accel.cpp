@@ -1,3 +1,4 @@
+#include "accel/octree.h"
 #include "accel/registry.h"
 #include "accel/uniform_grid.h"
 
@@ -6,6 +7,7 @@ namespace raymeter {
 void register_accel(Registry& registry) {
   registry.add(grid_kind());
   registry.add(tunable_grid_kind());
+  registry.add(octree_kind());
 }
 
 }  // namespace raymeter

@@ -1,0 +1,148 @@
+#include "accel/octree.h"
+
+#include <span>
+
+#include "accel/octree_cells.h"
+#include "accel/octree_glassner.h"
+#include "accel/octree_top_down.h"
+#include "accel/per_ray_structure.h"
+#include "accel/primitive_test.h"
+
+namespace raymeter {
+namespace {
+
+/// What a walk does in its leaves, and when it is over.
+template <class Probe>
+struct ClosestQuery {
+  const Scene& scene;
+  std::span<const std::uint32_t> references;
+  FilterRay ray;
+  Probe& probe;
+  Hit best = {};
+
+  void test(std::uint32_t primitive) { test_closest(scene, primitive, ray, best, probe); }
+  bool test_leaf(std::uint32_t first, std::uint32_t count) {
+    for (const std::uint32_t primitive : references.subspan(first, count)) test(primitive);
+    return true;
+  }
+  bool over(double enter) const { return beyond(enter, best.t); }
+};
+
+template <class Probe>
+struct AnyQuery {
+  const Scene& scene;
+  std::span<const std::uint32_t> references;
+  FilterRay ray;
+  Probe& probe;
+  bool found = false;
+
+  void test(std::uint32_t primitive) { found = found || test_any(scene, primitive, ray, probe); }
+  bool test_leaf(std::uint32_t first, std::uint32_t count) {
+    for (const std::uint32_t primitive : references.subspan(first, count)) {
+      test(primitive);
+      if (found) return false;
+    }
+    return true;
+  }
+  bool over(double) const { return false; }
+};
+
+/// `Nodes` is GlassnerOctree or TopDownOctree.
+template <class Nodes>
+class Octree final : public PerRayStructure<Octree<Nodes>> {
+ public:
+  Octree(const Scene& scene, std::uint32_t leaf, int depth, std::uint64_t memory_limit)
+      : PerRayStructure<Octree<Nodes>>(scene),
+        meter_(memory_limit),
+        references_(MeteredAllocator<std::uint32_t>(meter_)) {
+    OctreeCells tree = build_octree_cells(scene, leaf, depth, meter_);
+    if (tree.nodes.empty()) return;
+    const Vec3d extent = tree.space.scene.extent();
+    const double cell = std::ldexp(tree.space.cell, depth - tree.depth);
+    for (int axis = 0; axis < 3; ++axis)
+      stats_.resolution[static_cast<std::size_t>(axis)] =
+          static_cast<std::uint32_t>(std::ceil(extent[axis] / cell));
+    stats_.cells = tree.leaves;
+    stats_.empty_cells = tree.empty_leaves;
+    stats_.inner_nodes = tree.inner_nodes;
+    stats_.references = tree.references.size();
+    stats_.depth = static_cast<std::uint32_t>(tree.depth);
+    stats_.note = tree.note;
+
+    space_ = tree.space.scene;
+    references_ = std::move(tree.references);
+    nodes_.emplace(tree, meter_);
+  }
+
+  template <class Probe>
+  Hit closest_hit(const Ray& ray, Probe& probe) const {
+    ClosestQuery<Probe> query{this->scene(), references_, FilterRay(ray), probe};
+    answer(ray, query, probe);
+    return query.best;
+  }
+  template <class Probe>
+  bool any_hit(const Ray& ray, Probe& probe) const {
+    AnyQuery<Probe> query{this->scene(), references_, FilterRay(ray), probe};
+    answer(ray, query, probe);
+    return query.found;
+  }
+
+  StructureStats stats() const final {
+    StructureStats stats = stats_;
+    stats.bytes = meter_.bytes();
+    stats.peak_bytes = meter_.peak();
+    if (nodes_) stats.bytes_by_part.push_back(nodes_->bytes());
+    stats.bytes_by_part.emplace_back("references", references_.capacity() * sizeof(std::uint32_t));
+    return stats;
+  }
+
+ private:
+  template <class Query, class Probe>
+  void answer(const Ray& ray, Query& query, Probe& probe) const {
+    if (!nodes_ || !is_traceable(ray)) return;
+    const WalkRay walk(ray);
+    if (too_far(walk, space_)) {
+      const auto primitives = static_cast<std::uint32_t>(this->scene().primitive_count());
+      for (std::uint32_t primitive = 0; primitive < primitives; ++primitive) query.test(primitive);
+      return;
+    }
+    const WalkInterval interval = clip(walk, ray, space_.low, space_.high);
+    if (!interval.empty()) nodes_->walk(walk, interval, query, probe);
+  }
+
+  MemoryMeter meter_;
+  MeteredVector<std::uint32_t> references_;
+  std::optional<Nodes> nodes_;  // none in an empty scene
+  WalkSpace space_;
+  StructureStats stats_;
+};
+
+std::unique_ptr<Structure> build_octree(const Arguments& arguments, const BuildInput& input) {
+  const auto leaf = static_cast<std::uint32_t>(arguments.integer("leaf"));
+  const auto depth = static_cast<int>(arguments.integer("depth"));
+  if (arguments.text("traversal") == "glassner")
+    return std::make_unique<Octree<GlassnerOctree>>(input.scene, leaf, depth, input.memory_limit);
+  return std::make_unique<Octree<TopDownOctree>>(input.scene, leaf, depth, input.memory_limit);
+}
+
+}  // namespace
+
+StructureKind octree_kind() {
+  return {
+      .name = "octree",
+      .summary =
+          "cells split in 8 while they are crowded; nodes in a hash table, points located from the root",
+      .source = "Glassner 1984; top-down: Revelles, Urena and Lastra 2000",
+      .answers = Answers::exact,
+      .parameters = {{"leaf", ParameterType::integer, "8",
+                      "primitives that a cell may hold without being split", 1, 1e6},
+                     {"depth", ParameterType::integer, "10", "levels below the root, at most", 0, 20},
+                     {.name = "traversal",
+                      .type = ParameterType::choice,
+                      .default_value = "glassner",
+                      .meaning = "point location from the root for each cell, or one descent with a stack",
+                      .choices = {"glassner", "top-down"}}},
+      .build = build_octree};
+}
+
+}  // namespace raymeter

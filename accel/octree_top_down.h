@@ -1,0 +1,88 @@
+#pragma once
+#include "accel/octree_cells.h"
+
+namespace raymeter {
+
+/// The walk of Revelles, Urena and Lastra, "An Efficient Parametric Algorithm for Octree Traversal" (2000):
+/// from the root down, the children of each node in the order in which the ray crosses the node's middle
+/// planes. The nodes are Glassner's, kept in an array with the eight children of a node side by side instead
+/// of in his hash table. Unlike the paper's, the middle crossings are computed from the planes and not as the
+/// mean of the outer ones, and a direction of 0 needs no infinite arithmetic: it never changes sides.
+class TopDownOctree {
+ public:
+  TopDownOctree(OctreeCells& tree, MemoryMeter&) : space_(tree.space), nodes_(std::move(tree.nodes)) {}
+
+  /// As GlassnerOctree::walk.
+  template <class Query, class Probe>
+  void walk(const WalkRay& ray, const WalkInterval& interval, Query& query, Probe& probe) const {
+    unsigned mirror = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      if (ray.direction[axis] < 0) mirror |= 1u << axis;
+    const Walk<Query, Probe> state{ray, mirror, query, probe};
+    visit(state, nodes_[0], {0, 0, 0}, space_.cells, interval.enter, interval.leave);
+  }
+
+  std::pair<std::string, std::uint64_t> bytes() const {
+    return {"nodes", nodes_.capacity() * sizeof(OctreeNode)};
+  }
+
+ private:
+  template <class Query, class Probe>
+  struct Walk {
+    const WalkRay& ray;
+    unsigned mirror;  // bit a: the ray runs from high to low along axis a
+    Query& query;
+    Probe& probe;
+  };
+
+  /// Visits what the ray meets of a node between t = enter and leave; false when the walk is over.
+  template <class Query, class Probe>
+  bool visit(const Walk<Query, Probe>& walk, const OctreeNode& node, const CellIndex& corner,
+             std::int32_t size, double enter, double leave) const {
+    if (!node.is_inner()) {
+      walk.probe.cell_step(node.count == 0);
+      return walk.query.test_leaf(node.first, node.count);
+    }
+    walk.probe.inner_step();
+
+    // Finds where the ray crosses the middle planes, and in which half along each axis it starts: bit a of
+    // `half` is set when it is in the one it comes to later.
+    const std::int32_t child_size = size >> 1;
+    Vec3d middle;
+    unsigned half = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double plane = space_.plane(axis, corner[axis] + child_size);
+      constexpr double never = std::numeric_limits<double>::infinity();
+      if (walk.ray.direction[axis] == 0)
+        middle[axis] = walk.ray.origin[axis] < plane ? never : -never;
+      else
+        middle[axis] = (plane - walk.ray.origin[axis]) * walk.ray.inverse[axis];
+      if (middle[axis] <= enter) half |= 1u << axis;
+    }
+
+    // Visits a child, then steps across the next middle plane, until the ray leaves the node.
+    while (true) {
+      int next_axis = -1;
+      double next = leave;
+      for (int axis = 0; axis < 3; ++axis)
+        if ((half >> axis & 1u) == 0 && middle[axis] < next) {
+          next = middle[axis];
+          next_axis = axis;
+        }
+      const unsigned child = half ^ walk.mirror;
+      const CellIndex child_corner{corner.x + (child & 1u ? child_size : 0),
+                                   corner.y + (child & 2u ? child_size : 0),
+                                   corner.z + (child & 4u ? child_size : 0)};
+      if (!visit(walk, nodes_[node.first + child], child_corner, child_size, enter, next)) return false;
+      if (next_axis < 0) return true;
+      if (walk.query.over(next)) return false;
+      enter = next;
+      half |= 1u << next_axis;
+    }
+  }
+
+  OctreeSpace space_;
+  MeteredVector<OctreeNode> nodes_;
+};
+
+}  // namespace raymeter
