@@ -118,6 +118,76 @@ inline Triangle triangle(Random& random, Style style) {
   return result;
 }
 
+/// Of any kind; often with a tip, an axis along a coordinate axis, no radius or no length.
+inline Quadric quadric(Random& random, Style style) {
+  Quadric q;
+  q.kind = static_cast<QuadricKind>(random.below(3));
+  q.base = point(random, style);
+  q.base_radius = std::abs(number(random, style));
+  if (q.kind == QuadricKind::sphere) return q;
+  q.apex = point(random, style);
+  q.apex_radius = q.kind == QuadricKind::cylinder ? q.base_radius : std::abs(number(random, style));
+  switch (random.below(8)) {
+    case 0:
+    case 1:
+    case 2: {
+      const int axis = int(random.below(3));
+      const float along = q.apex[axis];
+      q.apex = q.base;
+      q.apex[axis] = along;
+      break;
+    }
+    case 3:
+      q.apex_radius = 0;
+      break;
+    case 4:
+      q.base_radius = 0;
+      break;
+    case 5:
+      if (random.below(8) == 0) q.apex = q.base;
+      break;
+    default:
+      break;
+  }
+  if (q.kind == QuadricKind::cylinder) q.apex_radius = q.base_radius;
+  return q;
+}
+
+/// A ray at the tip, rim, silhouette or along a generator of a quadric, or near one.
+inline Ray ray_towards(Random& random, Style style, const Quadric& q) {
+  const int axis = int(random.below(3));
+  Vec3 out{};
+  out[axis] = random.below(2) ? 1.0f : -1.0f;
+  const bool sphere = q.kind == QuadricKind::sphere;
+  const Vec3 rim = q.base + q.base_radius * out, other = q.apex + q.apex_radius * out;
+  switch (random.below(8)) {
+    case 0:
+      return ray_towards(random, style, q.base);
+    case 1:
+      return ray_towards(random, style, sphere ? rim : q.apex);
+    case 2:
+      return ray_towards(random, style, rim);
+    case 3:
+      return ray_towards(random, style, sphere ? rim : 0.5f * rim + 0.5f * other);
+    case 4: {  // in the tangent plane at the rim
+      Vec3 along = point(random, style);
+      along[axis] = 0;
+      return {rim - along, 0, random.below(2) ? along : 2.0f * along};
+    }
+    case 5: {  // parallel to a generator or to the axis, on it or beside it
+      const Vec3 direction = sphere ? out : random.below(2) ? other - rim : q.apex - q.base;
+      return {random.below(2) ? rim - direction : point(random, style), 0, direction};
+    }
+    case 6:
+      return {rim, 0, point(random, style)};  // from the surface
+    default: {
+      const Vec3 near{random.uniform(-1.2f, 1.2f), random.uniform(-1.2f, 1.2f), random.uniform(-1.2f, 1.2f)};
+      const float along = sphere ? 0.0f : random.uniform();
+      return ray_towards(random, style, q.base + along * (q.apex - q.base) + q.base_radius * near);
+    }
+  }
+}
+
 /// Puts the ends of the interval on or beside the hit at t.
 inline void tempt_interval(Random& random, Ray& ray, float t) {
   if (t == no_hit) return;

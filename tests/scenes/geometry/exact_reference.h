@@ -5,8 +5,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cfloat>
 #include <cmath>
-#include <optional>
-#include <vector>
+#include <utility>
 
 #include "scenes/geometry/primitives.h"
 #include "scenes/geometry/ray.h"
@@ -27,7 +26,6 @@ inline Integer units(float x) {
 inline Point units(const Vec3& v) {
   return {units(v.x), units(v.y), units(v.z)};
 }
-inline const Integer one_unit = Integer(1) << 149;
 
 /// The rounding of decide.h, of numerator / denominator.
 inline float round_fraction(Integer numerator, Integer denominator) {
@@ -92,6 +90,81 @@ inline float decide(const Ray& ray, const Triangle& triangle) {
     left |= side > 0, right |= side < 0;
   }
   return left && right ? no_hit : in_interval(ray, round_fraction(rise, slope));
+}
+
+/// P t^2 + Q t + R = 0, solved: a root is an integer fraction, or lies between two that are made to agree in
+/// all that is asked of it.
+class Roots {
+ public:
+  Roots(Integer p, Integer q, Integer r) : p_(std::move(p)), q_(std::move(q)), r_(std::move(r)) {}
+
+  /// The least float in the ray's interval among the roots t = n / m for which keep(n, m) holds.
+  template <class Keep>
+  float least(const Ray& ray, const Keep& keep) const {
+    if (p_ == 0) {
+      if (q_ == 0) return no_hit;
+      return keep(-r_, q_) ? in_interval(ray, round_fraction(-r_, q_)) : no_hit;
+    }
+    const Integer discriminant = q_ * q_ - 4 * p_ * r_;
+    if (discriminant < 0) return no_hit;
+    float best = no_hit;
+    for (const int sign : {-1, 1}) {
+      for (int bits = 0;; bits += 50) {
+        Integer rest;
+        const Integer root = sqrt(Integer(discriminant << (2 * bits)), rest);
+        const Integer denominator = (2 * p_) << bits, low = -(q_ << bits) + sign * root;
+        const Integer high = rest == 0 ? low : Integer(low + sign);
+        const float t = round_fraction(low, denominator);
+        const bool kept = keep(low, denominator);
+        if (t != round_fraction(high, denominator) || kept != keep(high, denominator)) continue;
+        if (kept) best = std::min(best, in_interval(ray, t));
+        break;
+      }
+    }
+    return best;
+  }
+
+ private:
+  Integer p_, q_, r_;
+};
+
+/// From the squared distance to the axis as a polynomial in t.
+inline float decide(const Ray& ray, const Quadric& quadric) {
+  if (!can_hit(ray) || !finite(quadric.base) || !finite(quadric.apex) ||
+      !std::isfinite(quadric.base_radius) || !std::isfinite(quadric.apex_radius))
+    return no_hit;
+  Point o = units(ray.origin), d = units(ray.direction), base = units(quadric.base),
+        apex = units(quadric.apex);
+  Integer r0 = units(quadric.base_radius), r1 = units(quadric.apex_radius);
+  // In the largest unit that will do: integer square roots are slow.
+  unsigned spare = 1000;
+  const auto each = [&](const auto& visit) {
+    for (Point* v : {&o, &d, &base, &apex}) visit(v->x), visit(v->y), visit(v->z);
+    visit(r0), visit(r1);
+  };
+  each([&](const Integer& x) {
+    if (x != 0) spare = std::min<unsigned>(spare, lsb(abs(x)));
+  });
+  each([&](Integer& x) { x = x < 0 ? -Integer(-x >> spare) : Integer(x >> spare); });
+
+  const Point w = o - base;
+  const Integer square[3] = {dot(w, w), 2 * dot(w, d), dot(d, d)};
+  if (quadric.kind == QuadricKind::sphere)
+    return Roots(square[2], square[1], square[0] - r0 * r0).least(ray, [](auto&&...) { return true; });
+  const Point axis = apex - base;
+  const Integer l = dot(axis, axis), height[2] = {dot(w, axis), dot(d, axis)};
+  const Integer radius[2] = {l * r0 + (r1 - r0) * height[0], (r1 - r0) * height[1]};
+  const auto coefficient = [&](int i) {
+    const auto product = [i](const Integer* x) -> Integer {
+      return i == 0 ? Integer(x[0] * x[0]) : i == 1 ? Integer(2 * x[0] * x[1]) : Integer(x[1] * x[1]);
+    };
+    return Integer(l * l * square[i] - l * product(height) - product(radius));
+  };
+  return Roots(coefficient(2), coefficient(1), coefficient(0)).least(ray, [&](Integer n, Integer m) {
+    if (m < 0) n = -n, m = -m;
+    const Integer h = height[0] * m + height[1] * n;
+    return h >= 0 && h <= l * m;
+  });
 }
 
 }  // namespace raymeter::reference
