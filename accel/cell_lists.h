@@ -31,6 +31,21 @@ class CellLists {
     ends_to_beginnings();
   }
 
+  /// Empties the lists of the cells where is_dropped(cell), and gives their memory back.
+  template <class IsDropped>
+  void drop(const IsDropped& is_dropped) {
+    std::uint32_t kept = 0, begin = 0;
+    for (std::uint64_t c = 0; c < cells(); ++c) {
+      const std::uint32_t end = offsets_[c + 1];
+      if (!is_dropped(c))
+        for (std::uint32_t r = begin; r < end; ++r) references_[kept++] = references_[r];
+      begin = end;
+      offsets_[c + 1] = kept;
+    }
+    references_.resize(kept);
+    references_.shrink_to_fit();
+  }
+
   std::span<const std::uint32_t> operator[](std::uint64_t cell) const {
     return {references_.data() + offsets_[cell], references_.data() + offsets_[cell + 1]};
   }

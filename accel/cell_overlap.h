@@ -5,10 +5,16 @@
 #include <cstdint>
 
 #include "accel/cell_grid.h"
+#include "accel/walk_space.h"
 #include "scenes/geometry/primitives.h"
 #include "scenes/scene.h"
 
 namespace raymeter {
+
+/// The space to subdivide; of an empty scene, a point.
+inline WalkSpace walk_space_of(const Scene& scene) {
+  return WalkSpace(scene.bounds().empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : scene.bounds());
+}
 
 /// How closely primitives are registered.
 enum class Fit : std::uint8_t {

@@ -135,7 +135,8 @@ ChosenResolution limited(Wanted wanted, const ShapeSizes& shapes, const Resoluti
     add_note(limit, fmt::format("{} cells", limits.cells));
   }
 
-  if (wanted != asked)
+  chosen.clamped = wanted != asked;
+  if (chosen.clamped)
     chosen.note = fmt::format("clamped from {} to {} (limit {})", product(asked), product(wanted), limit);
   for (std::size_t axis = 0; axis < 3; ++axis) chosen.n[axis] = static_cast<std::uint32_t>(wanted[axis]);
   return chosen;

@@ -59,7 +59,8 @@ struct ResolutionLimits {
 
 struct ChosenResolution {
   Resolution n{1, 1, 1};
-  std::string note;  ///< where this differs from what the rule's formula says; else empty
+  bool clamped = false;  ///< by the limits
+  std::string note;      ///< where this differs from what the rule's formula says; else empty
 };
 
 /// Applies the rule; at least one cell along each axis. Where a formula has no answer or a bad one:

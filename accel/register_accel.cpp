@@ -1,5 +1,6 @@
 #include "accel/octree.h"
 #include "accel/registry.h"
+#include "accel/two_level_grid.h"
 #include "accel/uniform_grid.h"
 
 namespace raymeter {
@@ -8,6 +9,7 @@ void register_accel(Registry& registry) {
   registry.add(grid_kind());
   registry.add(tunable_grid_kind());
   registry.add(octree_kind());
+  registry.add(two_level_grid_kind());
 }
 
 }  // namespace raymeter

@@ -1,15 +1,11 @@
 #include "accel/uniform_grid.h"
 
-#include <array>
-#include <limits>
-
 #include "accel/cell_lists.h"
 #include "accel/cell_overlap.h"
+#include "accel/cell_query.h"
 #include "accel/grid_resolution.h"
 #include "accel/grid_walk.h"
-#include "accel/mailbox.h"
 #include "accel/per_ray_structure.h"
-#include "accel/primitive_test.h"
 
 namespace raymeter {
 namespace {
@@ -25,7 +21,7 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
   UniformGrid(const BuildInput& input, const Options& options)
       : PerRayStructure(input.scene), options_(options), meter_(input.memory_limit), lists_(meter_) {
     const Scene& scene = input.scene;
-    space_ = WalkSpace(scene.bounds().empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : scene.bounds());
+    space_ = walk_space_of(scene);
     const auto limits = ResolutionLimits::within(input.memory_limit, 4 * space_.margin);
     const auto chosen = choose_resolution(options.rule, shape_sizes(scene), limits);
     grid_ = CellGrid(space_.low, space_.high, chosen.n);
@@ -48,60 +44,25 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
 
   template <class Probe>
   Hit closest_hit(const Ray& ray, Probe& probe) const {
-    return options_.mailbox ? closest_hit<Mailbox>(ray, probe) : closest_hit<NoMailbox>(ray, probe);
+    return options_.mailbox ? answer<ClosestQuery<Mailbox, Probe>>(ray, probe)
+                            : answer<ClosestQuery<NoMailbox, Probe>>(ray, probe);
   }
   template <class Probe>
   bool any_hit(const Ray& ray, Probe& probe) const {
-    return options_.mailbox ? any_hit<Mailbox>(ray, probe) : any_hit<NoMailbox>(ray, probe);
+    return options_.mailbox ? answer<AnyQuery<Mailbox, Probe>>(ray, probe)
+                            : answer<AnyQuery<NoMailbox, Probe>>(ray, probe);
   }
 
  private:
-  template <class Box, class Probe>
-  Hit closest_hit(const Ray& ray, Probe& probe) const {
-    Hit best;
-    if (!is_traceable(ray)) return best;
-    const WalkRay walk(ray);
-    if (too_far(walk, space_)) return closest_of_all(scene(), ray, probe);
-    const WalkInterval interval = clip(walk, ray, space_.low, space_.high);
-    if (interval.empty()) return best;
-
-    const FilterRay filter(ray);
-    Box mailbox;
-    double last = interval.leave;
-    walk_cells(grid_, walk, interval, [&](std::uint64_t cell, double, double) {
-      const auto primitives = lists_[cell];
-      probe.cell_step(primitives.empty());
-      for (const std::uint32_t p : primitives)
-        if (mailbox.is_new(p)) test_closest(scene(), p, filter, best, probe);
-      // A hit may lie beyond this cell: it stands, and the walk goes on until nothing can beat it.
-      if (!primitives.empty() && best.found()) last = std::min(last, latest(best.t));
-      return last;
-    });
-    return best;
-  }
-
-  template <class Box, class Probe>
-  bool any_hit(const Ray& ray, Probe& probe) const {
-    if (!is_traceable(ray)) return false;
-    const WalkRay walk(ray);
-    if (too_far(walk, space_)) return any_of_all(scene(), ray, probe);
-    const WalkInterval interval = clip(walk, ray, space_.low, space_.high);
-    if (interval.empty()) return false;
-
-    const FilterRay filter(ray);
-    Box mailbox;
-    bool hit = false;
-    walk_cells(grid_, walk, interval, [&](std::uint64_t cell, double, double) {
-      const auto primitives = lists_[cell];
-      probe.cell_step(primitives.empty());
-      for (const std::uint32_t p : primitives)
-        if (mailbox.is_new(p) && test_any(scene(), p, filter, probe)) {
-          hit = true;
-          return -std::numeric_limits<double>::infinity();
-        }
-      return interval.leave;
-    });
-    return hit;
+  template <class Query, class Probe>
+  typename Query::Answer answer(const Ray& ray, Probe& probe) const {
+    return answer_by_walk<Query>(scene(), space_, ray, probe,
+                                 [this](const WalkRay& walk, const WalkInterval& interval, Query& query) {
+                                   walk_cells(grid_, walk, interval, [&](std::uint64_t cell, double, double) {
+                                     query.visit(lists_[cell]);
+                                     return query.last();
+                                   });
+                                 });
   }
 
   Options options_;

@@ -21,7 +21,7 @@ TEST(UniformGrid, AnswersLikeBruteForce) {
       "tunable-grid:rule=pbrt",
       "tunable-grid:cells=4:fit=exact",
   };
-  expect_brute_force_on_many_scenes(specs, 2000);
+  expect_brute_force_on_many_scenes(specs, 1500);
 }
 
 }  // namespace
