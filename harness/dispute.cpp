@@ -205,7 +205,9 @@ std::optional<Grade> explain_invented(const Scene& scene, const Ray& ray, std::u
                                       std::optional<float> t) {
   // The ray must at least pass close by, where the kernel saw the hit or anywhere in the interval.
   const Range range = near(scene, ray, primitive);
-  if (!(range.low <= (t ? *t : ray.tfar) && range.high >= (t ? *t : ray.tnear))) return std::nullopt;
+  const bool passes =
+      range.low <= range.high && range.low <= (t ? *t : ray.tfar) && range.high >= (t ? *t : ray.tnear);
+  if (!passes) return std::nullopt;
 
   bool edge = false, limit = false;
   for (const Crossing& crossing : crossings(scene, ray, primitive)) {
