@@ -1,7 +1,5 @@
 #include "baselines/embree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -9,7 +7,6 @@
 
 #include "accel/primitive_test.h"
 #include "baselines/embree_device.h"
-#include "scenes/base/error.h"
 #include "scenes/base/float_mode.h"
 
 namespace raymeter {
@@ -121,12 +118,10 @@ void occlude_with_quadric(const RTCOccludedFunctionNArguments* arguments) {
 class EmbreeBvh {
  public:
   EmbreeBvh(const Arguments& arguments, const BuildInput& input)
-      : scene_(input.scene), device_(input.threads, arguments.text("isa"), input.memory_limit) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (!scene_.bounds().empty() && !(scene_.bounds().low[axis] >= -embree_largest_coordinate &&
-                                        scene_.bounds().high[axis] <= embree_largest_coordinate))
-        throw Error(fmt::format("embree: {}: coordinates beyond {:.3g} are outside what it accepts",
-                                scene_.name(), embree_largest_coordinate));
+      : scene_(input.scene),
+        memory_(input.memory_limit),
+        device_(input.threads, arguments.text("isa"), memory_) {
+    check_coordinates(scene_, "embree");
     bvh_.reset(rtcNewScene(device_.handle()));
     device_.check();
     const std::string& quality = arguments.text("quality");
@@ -146,15 +141,15 @@ class EmbreeBvh {
 
   StructureStats stats() const {
     StructureStats stats;
-    stats.bytes = device_.memory().bytes();
-    stats.peak_bytes = device_.memory().peak();
+    stats.bytes = memory_.bytes();
+    stats.peak_bytes = memory_.peak();
     stats.bytes_by_part = {{"bvh", stats.bytes}};
     return stats;
   }
 
  private:
   void attach_triangles() {
-    const EmbreeDevice::Geometry mesh(rtcNewGeometry(device_.handle(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    const EmbreeDevice::GeometryHandle mesh(rtcNewGeometry(device_.handle(), RTC_GEOMETRY_TYPE_TRIANGLE));
     device_.check();
     rtcSetSharedGeometryBuffer(mesh.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                scene_.vertices().data(), 0, sizeof(Vec3), scene_.vertices().size());
@@ -166,7 +161,7 @@ class EmbreeBvh {
     attach(mesh, triangle_geometry);
   }
   void attach_quadrics() {
-    const EmbreeDevice::Geometry quadrics(rtcNewGeometry(device_.handle(), RTC_GEOMETRY_TYPE_USER));
+    const EmbreeDevice::GeometryHandle quadrics(rtcNewGeometry(device_.handle(), RTC_GEOMETRY_TYPE_USER));
     device_.check();
     rtcSetGeometryUserPrimitiveCount(quadrics.get(), static_cast<unsigned>(scene_.quadrics().size()));
     rtcSetGeometryUserData(quadrics.get(), const_cast<Scene*>(&scene_));  // only ever read
@@ -176,15 +171,16 @@ class EmbreeBvh {
     device_.check();
     attach(quadrics, quadric_geometry);
   }
-  void attach(const EmbreeDevice::Geometry& geometry, unsigned id) {
+  void attach(const EmbreeDevice::GeometryHandle& geometry, unsigned id) {
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(bvh_.get(), geometry.get(), id);
     device_.check();
   }
 
   const Scene& scene_;
+  MemoryMeter memory_;
   EmbreeDevice device_;
-  EmbreeDevice::Scene bvh_;  // after the device: freed before it
+  EmbreeDevice::SceneHandle bvh_;  // after the device: freed before it
 };
 
 // ---- Rays. ----

@@ -25,8 +25,7 @@ bool cpu_has(std::string_view isa) {
 
 }  // namespace
 
-EmbreeDevice::EmbreeDevice(unsigned threads, std::string_view isa, std::uint64_t memory_limit)
-    : memory_(memory_limit) {
+EmbreeDevice::EmbreeDevice(unsigned threads, std::string_view isa, MemoryMeter& memory) : memory_(memory) {
   std::string configuration = fmt::format("threads={}", threads);
   if (isa != "default") {
     if (!cpu_has(isa))
@@ -64,10 +63,19 @@ bool EmbreeDevice::note_memory(void* self, ssize_t bytes, bool) {
 }
 
 void EmbreeDevice::check() const {
-  if (rtcGetDeviceError(handle()) == RTC_ERROR_NONE) return;
+  const RTCError code = rtcGetDeviceError(handle());
   const std::scoped_lock lock(mutex_);
+  // A refusal may have happened on another thread, for which Embree keeps another error code.
   if (!refusal_.empty()) throw MemoryLimitExceeded(refusal_);
-  throw std::runtime_error(fmt::format("embree: {}", error_));
+  if (code != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("embree: {}", error_));
+}
+
+void check_coordinates(const Scene& scene, std::string_view structure) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!scene.bounds().empty() && (scene.bounds().low[axis] < -embree_largest_coordinate ||
+                                    scene.bounds().high[axis] > embree_largest_coordinate))
+      throw Error(fmt::format("{}: {}: coordinates beyond {:.4g} are outside what Embree accepts", structure,
+                              scene.name(), embree_largest_coordinate));
 }
 
 std::string embree_version() {

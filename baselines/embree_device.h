@@ -6,10 +6,11 @@
 
 #include "accel/memory_meter.h"
 #include "baselines/embree_api.h"
+#include "scenes/scene.h"
 
 namespace raymeter {
 
-/// An Embree device of one structure's own, so that the memory it reports is that structure's.
+/// An Embree device of one structure's own, so that the memory it reports to the meter is that structure's.
 ///
 /// Embree's number of threads belongs to the process: it builds with the largest that any living device
 /// asked for. Only structures built for the same number should be alive together.
@@ -17,16 +18,15 @@ class EmbreeDevice {
  public:
   /// `isa` is default, sse2, sse4.2, avx, avx2 or avx512: the newest instruction set that Embree may use.
   /// Throws Error when this CPU does not have it (Embree itself would not notice).
-  EmbreeDevice(unsigned threads, std::string_view isa, std::uint64_t memory_limit);
+  /// The meter must outlive the device.
+  EmbreeDevice(unsigned threads, std::string_view isa, MemoryMeter& memory);
   EmbreeDevice(const EmbreeDevice&) = delete;
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
 
   RTCDevice handle() const { return device_.get(); }
-  const MemoryMeter& memory() const { return memory_; }
-  MemoryMeter& memory() { return memory_; }
 
-  /// To be called after calls into Embree, on the same thread. Throws MemoryLimitExceeded, or
-  /// std::runtime_error with Embree's words, if one of them failed.
+  /// To be called after calls into Embree, on the same thread. Throws MemoryLimitExceeded if Embree was
+  /// refused memory, or std::runtime_error with Embree's words if a call failed.
   void check() const;
 
  private:
@@ -35,7 +35,7 @@ class EmbreeDevice {
 
   mutable std::mutex mutex_;  // guards the texts
   std::string error_, refusal_;
-  MemoryMeter memory_;
+  MemoryMeter& memory_;
   template <auto release>
   struct Release {
     template <class T>
@@ -43,13 +43,17 @@ class EmbreeDevice {
       release(handle);
     }
   };
-  std::unique_ptr<RTCDeviceTy, Release<rtcReleaseDevice>> device_;  // last: it frees into the meter
+  std::unique_ptr<RTCDeviceTy, Release<rtcReleaseDevice>> device_;
 
  public:
-  using Scene = std::unique_ptr<RTCSceneTy, Release<rtcReleaseScene>>;
-  using Geometry = std::unique_ptr<RTCGeometryTy, Release<rtcReleaseGeometry>>;
-  using Bvh = std::unique_ptr<RTCBVHTy, Release<rtcReleaseBVH>>;
+  using SceneHandle = std::unique_ptr<RTCSceneTy, Release<rtcReleaseScene>>;
+  using GeometryHandle = std::unique_ptr<RTCGeometryTy, Release<rtcReleaseGeometry>>;
+  using BvhHandle = std::unique_ptr<RTCBVHTy, Release<rtcReleaseBVH>>;
 };
+
+/// Embree drops primitives that reach beyond `embree_largest_coordinate` without a word. Throws Error, naming
+/// `structure`, if the scene has any.
+void check_coordinates(const Scene& scene, std::string_view structure);
 
 /// "3.13.5"
 std::string embree_version();

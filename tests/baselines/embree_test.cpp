@@ -71,7 +71,7 @@ Round trace_in_chunks(Structure& structure, std::span<const Ray> rays, std::size
 
 TEST(Embree, AgreesWithBruteForceInEveryForm) {
   for (const Scene& scene : {mixed_scene(1, 300, 60), terrain_scene(2, 14), mixed_scene(3, 300, 0)}) {
-    const auto rays = random_rays(4, 3001);
+    const auto rays = random_rays(4, 1501);
     const auto truth = build("brute-force", scene);
     const auto hits = closest(*truth, rays);
     const auto occluded = any(*truth, rays);
