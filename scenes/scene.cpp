@@ -227,7 +227,8 @@ Camera default_camera(const Bounds& box) {
   const bool z_up = extent.z < extent.y && extent.z < extent.x;
   const Vec3d direction = z_up ? normalized(Vec3d{0.6, -0.9, 0.5}) : normalized(Vec3d{0.6, 0.5, 0.9});
   // The box's sphere fits a vertical half angle of atan(0.75 tan 22.5) = 17.3 degrees at 3.4 radii.
-  const double radius = std::max(0.5 * box.diagonal(), 1e-18);
+  // However small the box, the camera's place must differ from its centre in float.
+  const double radius = std::max({0.5 * box.diagonal(), 1e-6 * length(centre), 1e-18});
   camera.from = to_float(centre + 3.4 * radius * direction);
   camera.at = to_float(centre);
   camera.up = z_up ? Vec3{0, 0, 1} : Vec3{0, 1, 0};

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -153,10 +156,27 @@ inline void expect_treated_as(Reader read, const HostileCase& expected) {
   }
 }
 
-/// A third party's scene and how many triangles, quadrics and shapes it has.
+/// A third party's NFF scene: how many triangles, quadrics and objects it has.
 struct SharedCase {
   const char* file;
   std::size_t triangles, quadrics, shapes;
 };
+
+/// A third party's mesh: how many triangles, vertices (0: not said) and faces it has.
+struct MeshCase {
+  const char* file;
+  std::size_t triangles, vertices, faces;
+};
+
+inline void expect_mesh(Reader read, const MeshCase& expected) {
+  SCOPED_TRACE(expected.file);
+  const SceneData data = read(shared_file(std::string("scenes/meshes/") + expected.file));
+  EXPECT_EQ(data.triangles.size(), expected.triangles);
+  if (expected.vertices) {
+    EXPECT_EQ(data.vertices.size(), expected.vertices);
+  }
+  const Scene scene = scene_of(data);
+  EXPECT_EQ(scene.shape_count(), expected.faces);
+}
 
 }  // namespace raymeter
