@@ -10,6 +10,13 @@
 // the bound itself is below `large`, nothing has overflowed. And each flushed or denormal intermediate is off
 // by up to 2^-126, the thirty or so of them by less than 2^-120 times the norms: `tiny`, added to the norms,
 // pays for these (tiny^3 * 2^-20 = 2^-116).
+//
+// Quadrics are filtered in double, with errors bounded by the 1-norms of what goes in: W of the origin from
+// the base, 1..2 of the direction, R of the axis, S for the radius of the surface anywhere on the line
+// (`girth`) and m for its change per unit of the direction (`steepness`; both 0 and r for a sphere). The
+// vectors perpendicular to the axis are off by at most 48u of W or of the direction (13u R^2/A.A, R^2 <= 3
+// A.A, and some), so a, b and c by at most 110u of what Cauchy-Schwarz allows them to be; 2^-44 = 512u is
+// used. `tiny_length` pays for denormal inputs. Overflow makes the bounds infinite, and they reject nothing.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -80,8 +87,55 @@ inline bool may_hit(const FilterRay& ray, const Triangle& triangle, float tmax) 
            signed_height + height_error < ray.tnear_scaled * least_det * (1 - 0x1p-21));
 }
 
-inline bool may_hit(const FilterRay&, const Quadric&, float) {
-  return true;
+inline bool may_hit(const FilterRay& ray, const Quadric& quadric, float tmax) {
+  constexpr double tiny_length = 0x1p-60, unit_error = 0x1p-44;
+  const auto norm = [](const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+
+  // The line's points are at the heights foot + t * along, in lengths of the axis; perpendicular to it they
+  // are at w + t * d; and there the surface has the radius + t * slope.
+  Vec3d d = to_double(ray.direction), w = to_double(ray.ray.origin) - to_double(quadric.base);
+  double radius = quadric.base_radius, slope = 0, along = 0, foot = 0, steepness = 0, per_length = 0;
+  const double distance = norm(w) + tiny_length;
+  double girth = radius + tiny_length;
+  if (quadric.kind != QuadricKind::sphere) {
+    const Vec3d axis = to_double(quadric.apex) - to_double(quadric.base);
+    const double length = norm(axis), inverse = 1 / dot(axis, axis);
+    if (!(length > tiny_length)) return true;
+    along = dot(d, axis) * inverse, foot = dot(w, axis) * inverse;
+    d = d - along * axis, w = w - foot * axis;
+    const double widening = double(quadric.apex_radius) - radius;
+    per_length = length * inverse, steepness = std::abs(widening) * per_length;
+    slope = widening * along, radius += widening * foot, girth += steepness * distance;
+  }
+
+  // a t^2 + 2 b t + c = 0 has certainly no root.
+  const double a = dot(d, d) - slope * slope, b = dot(d, w) - slope * radius, c = dot(w, w) - radius * radius;
+  const double widest = 1 + steepness * steepness;
+  const double discriminant = b * b - a * c;
+  const double discriminant_error = 32 * unit_error * widest * (distance * distance + girth * girth);
+  if (discriminant < -discriminant_error) return false;
+  const double a_error = 4 * unit_error * widest;
+  if (!(a > a_error)) return true;
+
+  // Both roots are certainly on one side of h: the left (-1) or the right (1).
+  const auto side_of_roots = [&](double h) {
+    const double go = 2 * std::abs(h), reach = go + distance, width = steepness * go + girth;
+    if (!((a * h + 2 * b) * h + c > unit_error * (reach * reach + width * width))) return 0;
+    const double derivative = a * h + b,
+                 error = 2 * unit_error * (go * widest + distance + steepness * girth);
+    return derivative > error ? -1 : derivative < -error ? 1 : 0;
+  };
+  // As for triangles: what lies beyond this rounds to a float beyond tmax.
+  if (side_of_roots(std::max(tmax, FLT_MIN) * ray.scale * (1 + 0x1p-21)) > 0) return false;
+  if (side_of_roots(ray.tnear_scaled) < 0) return false;
+
+  // Both roots are certainly below the base or above the apex (times a).
+  if (quadric.kind == QuadricKind::sphere) return true;
+  const double middle = foot * a - b * along;
+  const double half = std::sqrt(std::max(discriminant, 0.0) + discriminant_error) * std::abs(along);
+  const double error =
+      64 * unit_error * per_length * (widest * distance + steepness * girth) + 0x1p-40 * half + a_error;
+  return !(middle + half < -error || middle - half > a + error);
 }
 
 }  // namespace raymeter

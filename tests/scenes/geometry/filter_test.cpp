@@ -61,6 +61,25 @@ TEST(FilterTriangle, RejectsNothingThatDecideAccepts) {
   }
 }
 
+TEST(FilterQuadric, RejectsNothingThatDecideAccepts) {
+  for (const auto style : adversary::styles) {
+    Random random(5, unsigned(style));
+    const bool slow = style == adversary::Style::mixed_scales || style == adversary::Style::extremes;
+    Tally tally;
+    for (int i = 0; i < (slow ? 5000 : 30000); ++i) {
+      const Quadric quadric = adversary::quadric(random, style);
+      Ray ray = adversary::ray_towards(random, style, quadric);
+      if (random.below(4) == 0) ray.tnear = -no_hit;
+      const float t = decide(ray, quadric);
+      adversary::tempt_interval(random, ray, t);
+      const float tmax = tempting_tmax(random, t);
+      ASSERT_TRUE(tally.add(ray, quadric, tmax));
+      const FlushDenormals mode;
+      ASSERT_TRUE(tally.add(ray, quadric, tmax));
+    }
+  }
+}
+
 TEST(FilterTriangle, SparesDecideTheOrdinaryMisses) {
   Random random(3);
   Tally tally;
@@ -71,6 +90,18 @@ TEST(FilterTriangle, SparesDecideTheOrdinaryMisses) {
     ASSERT_TRUE(tally.add(Ray{origin, 0, direction, 0.5f}, triangle, 0.5f));
   }
   EXPECT_GT(tally.rejected, 1000 * tally.passed);
+}
+
+TEST(FilterQuadric, SparesDecideTheOrdinaryMisses) {
+  Random random(6);
+  Tally tally;
+  for (int i = 0; i < 20000; ++i) {
+    const Quadric quadric = adversary::quadric(random, adversary::Style::natural);
+    const Vec3 origin = adversary::point(random, adversary::Style::natural);
+    const Vec3 direction = adversary::point(random, adversary::Style::natural);
+    ASSERT_TRUE(tally.add(Ray{origin, 0, direction, 0.5f}, quadric, 0.5f));
+  }
+  EXPECT_GT(tally.rejected, tally.passed) << tally.passed;
 }
 
 }  // namespace
