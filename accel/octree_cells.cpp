@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+
+#include "accel/cell_overlap.h"
 
 namespace raymeter {
 namespace {
@@ -24,7 +27,7 @@ class OctreeBuilder {
       : scene_(scene),
         leaf_(leaf),
         maximum_depth_(depth),
-        limit_(std::min<std::uint64_t>(64 * scene.primitive_count() + 65536, OctreeNode::inner - 8)),
+        limit_(std::min<std::uint64_t>(32 * scene.primitive_count() + 65536, OctreeNode::inner - 8)),
         meter_(meter),
         bounds_(MeteredAllocator<Bounds>(meter)),
         children_of_(MeteredAllocator<std::uint8_t>(meter)),
@@ -78,6 +81,12 @@ class OctreeBuilder {
     const auto [first, count] = tree_.nodes[node];
     if (count <= leaf_ || depth == maximum_depth_) return false;
 
+    // Keeps the node whole where there may be no room for its children: each primitive may meet several.
+    if (total_references_ + count > limit_ || tree_.nodes.size() + 8 > limit_) {
+      ++cells_kept_whole_;
+      return false;
+    }
+
     // Finds for each primitive the children that it meets.
     const std::int32_t half = tree_.space.cells >> (depth + 1);
     std::array<std::uint32_t, 8> counts{};
@@ -91,7 +100,7 @@ class OctreeBuilder {
     if (std::ranges::all_of(counts, [&](std::uint32_t n) { return n == count; })) return false;
     std::uint64_t references = total_references_ - count;
     for (const std::uint32_t n : counts) references += n;
-    if (references > limit_ || tree_.nodes.size() + 8 > limit_) {
+    if (references > limit_) {
       ++cells_kept_whole_;
       return false;
     }
@@ -104,8 +113,7 @@ class OctreeBuilder {
     std::size_t offset = next.references.size();
     for (unsigned child = 0; child < 8; ++child) {
       tree_.nodes.push_back({static_cast<std::uint32_t>(offset), counts[child]});
-      next.corners.push_back({corner.x + (child & 1u ? half : 0), corner.y + (child & 2u ? half : 0),
-                              corner.z + (child & 4u ? half : 0)});
+      next.corners.push_back(child_corner(corner, child, half));
       end[child] = offset;
       offset += counts[child];
     }
@@ -139,6 +147,29 @@ class OctreeBuilder {
       if (box.low[axis] - margin > middle) met &= high;
       if (box.high[axis] + margin < middle) met &= ~high;
     }
+    // The primitive meets the node, so it meets the only child that its bounding box meets.
+    if (std::has_single_bit(met)) return static_cast<std::uint8_t>(met);
+
+    // Twice the margin, as in cell_overlap.h: once for the walk, once for the rounding of the tests.
+    const double half_edge = 0.5 * half * tree_.space.cell, slack = 2 * margin;
+    const Vec3d half_size{half_edge, half_edge, half_edge};
+    if (scene_.is_triangle(primitive))
+      return of_these(met, TriangleOverlap(scene_.triangle(primitive), half_size, slack), corner, half);
+    const Quadric& quadric = scene_.quadric(primitive);
+    if (quadric.kind == QuadricKind::sphere)
+      return of_these(met, SphereOverlap(quadric, half_size, slack), corner, half);
+    return static_cast<std::uint8_t>(met);
+  }
+
+  /// Of `candidates`, the children that `overlap` meets.
+  template <class Overlap>
+  std::uint8_t of_these(unsigned candidates, const Overlap& overlap, const CellIndex& corner,
+                        std::int32_t half) const {
+    unsigned met = 0;
+    for (unsigned child = 0; child < 8; ++child)
+      if ((candidates >> child & 1u) != 0 &&
+          overlap.meets(tree_.space.centre(child_corner(corner, child, half), half)))
+        met |= 1u << child;
     return static_cast<std::uint8_t>(met);
   }
 

@@ -13,6 +13,13 @@ namespace raymeter {
 /// A cell of the finest level an octree may have, counted from the low corner of its cube.
 using CellIndex = Vector3<std::int32_t>;
 
+/// The low corner of child k of a node at `corner`; the child is in the node's high half along axis a where
+/// bit a of k is set. `size`: of the child.
+inline CellIndex child_corner(const CellIndex& corner, unsigned child, std::int32_t size) {
+  return {corner.x + (child & 1u ? size : 0), corner.y + (child & 2u ? size : 0),
+          corner.z + (child & 4u ? size : 0)};
+}
+
 /// The cube that an octree halves. It encloses the scene's walk space and shares its low corner, so that all
 /// cells are cubes (as Glassner's), thin scenes are not cut into slices thinner than they are wide, and a
 /// flat scene does not lie in the middle plane of its cube.
@@ -30,6 +37,11 @@ struct OctreeSpace {
   }
   /// The position of the plane between cells index - 1 and index.
   double plane(int axis, std::int32_t index) const { return scene.low[axis] + index * cell; }
+  /// The centre of a cube of `size` finest cells.
+  Vec3d centre(const CellIndex& corner, std::int32_t size) const {
+    const double half = 0.5 * size;
+    return scene.low + cell * Vec3d{corner.x + half, corner.y + half, corner.z + half};
+  }
 
   /// The cell that holds a coordinate; the first or the last where the coordinate is outside.
   std::int32_t index_at(int axis, double coordinate) const {
@@ -50,8 +62,7 @@ struct OctreeNode {
   bool is_inner() const { return count == inner; }
 };
 
-/// An octree as it is built: nodes with the eight children of each side by side, the root first. Child k of a
-/// node is in its high half along axis a where bit a of k is set.
+/// An octree as it is built: nodes with the eight children of each side by side, the root first.
 struct OctreeCells {
   OctreeSpace space;
   MeteredVector<OctreeNode> nodes;          ///< none when the scene is empty

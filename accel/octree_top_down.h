@@ -70,10 +70,9 @@ class TopDownOctree {
           next_axis = axis;
         }
       const unsigned child = half ^ walk.mirror;
-      const CellIndex child_corner{corner.x + (child & 1u ? child_size : 0),
-                                   corner.y + (child & 2u ? child_size : 0),
-                                   corner.z + (child & 4u ? child_size : 0)};
-      if (!visit(walk, nodes_[node.first + child], child_corner, child_size, enter, next)) return false;
+      if (!visit(walk, nodes_[node.first + child], child_corner(corner, child, child_size), child_size, enter,
+                 next))
+        return false;
       if (next_axis < 0) return true;
       if (walk.query.over(next)) return false;
       enter = next;

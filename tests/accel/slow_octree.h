@@ -123,14 +123,54 @@ class SlowOctree {
     for (const Node& child : children) grow(child);
   }
 
+  using Point = std::array<Real, 3>;
+
+  /// Whether a triangle or the surface of a sphere, or the bounding box of another quadric, meets the cell
+  /// grown by the margin.
   bool meets(std::uint32_t primitive, const Node& node) const {
-    const Bounds box = scene_.bounds_of(primitive);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Real low = node.low[static_cast<std::size_t>(axis)];
-      if (box.low[axis] > low + node.size + space_.margin || box.high[axis] < low - space_.margin)
-        return false;
+    Point low = node.low, high = node.low;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] -= space_.margin;
+      high[axis] += node.size + space_.margin;
     }
-    return true;
+    if (scene_.is_triangle(primitive)) return !clipped(scene_.triangle(primitive), low, high).empty();
+    const Quadric& quadric = scene_.quadric(primitive);
+    Real nearest = 0, farthest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Bounds box = scene_.bounds_of(primitive);
+      const int a = static_cast<int>(axis);
+      if (box.low[a] > high[axis] || box.high[a] < low[axis]) return false;
+      const Real centre = quadric.base[a], nearer = std::clamp(centre, low[axis], high[axis]) - centre;
+      const Real farther = std::max(std::abs(low[axis] - centre), std::abs(high[axis] - centre));
+      nearest += nearer * nearer;
+      farthest += farther * farther;
+    }
+    const Real square = Real(quadric.base_radius) * quadric.base_radius;
+    return quadric.kind != QuadricKind::sphere || (nearest <= square && square <= farthest);
+  }
+
+  /// What is left of a triangle inside a box, as a polygon: Sutherland and Hodgman, 1974.
+  static std::vector<Point> clipped(const Triangle& triangle, const Point& low, const Point& high) {
+    std::vector<Point> polygon;
+    for (const Vec3& v : {triangle.a, triangle.b, triangle.c}) polygon.push_back({v.x, v.y, v.z});
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const bool lower : {true, false}) {
+        const auto inside = [&](const Point& p) {
+          return lower ? p[axis] - low[axis] : high[axis] - p[axis];
+        };
+        std::vector<Point> rest;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+          const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+          const Real at_a = inside(a), at_b = inside(b);
+          if (at_a >= 0) rest.push_back(a);
+          if ((at_a < 0) == (at_b < 0)) continue;
+          Point cut;
+          for (std::size_t k = 0; k < 3; ++k) cut[k] = a[k] + (b[k] - a[k]) * (at_a / (at_a - at_b));
+          rest.push_back(cut);
+        }
+        polygon = std::move(rest);
+      }
+    return polygon;
   }
 
   /// The part of the ray inside a node and inside the box of the scene.
