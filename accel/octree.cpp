@@ -1,60 +1,23 @@
 #include "accel/octree.h"
 
-#include <span>
+#include <cmath>
+#include <optional>
 
+#include "accel/cell_query.h"
 #include "accel/octree_cells.h"
 #include "accel/octree_glassner.h"
 #include "accel/octree_top_down.h"
 #include "accel/per_ray_structure.h"
-#include "accel/primitive_test.h"
 
 namespace raymeter {
 namespace {
-
-/// What a walk does in its leaves, and when it is over.
-template <class Probe>
-struct ClosestQuery {
-  const Scene& scene;
-  std::span<const std::uint32_t> references;
-  FilterRay ray;
-  Probe& probe;
-  Hit best = {};
-
-  void test(std::uint32_t primitive) { test_closest(scene, primitive, ray, best, probe); }
-  bool test_leaf(std::uint32_t first, std::uint32_t count) {
-    for (const std::uint32_t primitive : references.subspan(first, count)) test(primitive);
-    return true;
-  }
-  bool over(double enter) const { return beyond(enter, best.t); }
-};
-
-template <class Probe>
-struct AnyQuery {
-  const Scene& scene;
-  std::span<const std::uint32_t> references;
-  FilterRay ray;
-  Probe& probe;
-  bool found = false;
-
-  void test(std::uint32_t primitive) { found = found || test_any(scene, primitive, ray, probe); }
-  bool test_leaf(std::uint32_t first, std::uint32_t count) {
-    for (const std::uint32_t primitive : references.subspan(first, count)) {
-      test(primitive);
-      if (found) return false;
-    }
-    return true;
-  }
-  bool over(double) const { return false; }
-};
 
 /// `Nodes` is GlassnerOctree or TopDownOctree.
 template <class Nodes>
 class Octree final : public PerRayStructure<Octree<Nodes>> {
  public:
   Octree(const Scene& scene, std::uint32_t leaf, int depth, std::uint64_t memory_limit)
-      : PerRayStructure<Octree<Nodes>>(scene),
-        meter_(memory_limit),
-        references_(MeteredAllocator<std::uint32_t>(meter_)) {
+      : PerRayStructure<Octree<Nodes>>(scene), meter_(memory_limit) {
     OctreeCells tree = build_octree_cells(scene, leaf, depth, meter_);
     if (tree.nodes.empty()) return;
     const Vec3d extent = tree.space.scene.extent();
@@ -70,48 +33,37 @@ class Octree final : public PerRayStructure<Octree<Nodes>> {
     stats_.note = tree.note;
 
     space_ = tree.space.scene;
-    references_ = std::move(tree.references);
-    nodes_.emplace(tree, meter_);
+    nodes_.emplace(std::move(tree), meter_);
   }
 
   template <class Probe>
   Hit closest_hit(const Ray& ray, Probe& probe) const {
-    ClosestQuery<Probe> query{this->scene(), references_, FilterRay(ray), probe};
-    answer(ray, query, probe);
-    return query.best;
+    return answer<ClosestQuery<NoMailbox, Probe>>(ray, probe);
   }
   template <class Probe>
   bool any_hit(const Ray& ray, Probe& probe) const {
-    AnyQuery<Probe> query{this->scene(), references_, FilterRay(ray), probe};
-    answer(ray, query, probe);
-    return query.found;
+    return answer<AnyQuery<NoMailbox, Probe>>(ray, probe);
   }
 
   StructureStats stats() const final {
     StructureStats stats = stats_;
     stats.bytes = meter_.bytes();
     stats.peak_bytes = meter_.peak();
-    if (nodes_) stats.bytes_by_part.push_back(nodes_->bytes());
-    stats.bytes_by_part.emplace_back("references", references_.capacity() * sizeof(std::uint32_t));
+    if (nodes_) stats.bytes_by_part = nodes_->bytes_by_part();
     return stats;
   }
 
  private:
   template <class Query, class Probe>
-  void answer(const Ray& ray, Query& query, Probe& probe) const {
-    if (!nodes_ || !is_traceable(ray)) return;
-    const WalkRay walk(ray);
-    if (too_far(walk, space_)) {
-      const auto primitives = static_cast<std::uint32_t>(this->scene().primitive_count());
-      for (std::uint32_t primitive = 0; primitive < primitives; ++primitive) query.test(primitive);
-      return;
-    }
-    const WalkInterval interval = clip(walk, ray, space_.low, space_.high);
-    if (!interval.empty()) nodes_->walk(walk, interval, query, probe);
+  typename Query::Answer answer(const Ray& ray, Probe& probe) const {
+    if (!nodes_) return {};
+    return answer_by_walk<Query>(this->scene(), space_, ray, probe,
+                                 [&](const WalkRay& walk_ray, const WalkInterval& interval, Query& query) {
+                                   nodes_->walk(walk_ray, interval, query, probe);
+                                 });
   }
 
   MemoryMeter meter_;
-  MeteredVector<std::uint32_t> references_;
   std::optional<Nodes> nodes_;  // none in an empty scene
   WalkSpace space_;
   StructureStats stats_;

@@ -1,4 +1,9 @@
 #pragma once
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "accel/octree_cells.h"
 #include "accel/octree_names.h"
 
@@ -9,10 +14,10 @@ namespace raymeter {
 /// present one, where the ray leaves it.
 class GlassnerOctree {
  public:
-  GlassnerOctree(const OctreeCells& tree, MemoryMeter& meter) : space_(tree.space), names_(tree, meter) {}
+  GlassnerOctree(OctreeCells tree, MemoryMeter& meter)
+      : space_(tree.space), names_(tree, meter), references_(std::move(tree.references)) {}
 
-  /// Shows `query` the leaves that the ray meets in `interval`, in order: `query.test_leaf(first, count)` is
-  /// whether to go on, `query.over(t)` whether nothing from t on matters.
+  /// Shows `query` (cell_query.h) the leaves that the ray meets in `interval`, in order.
   template <class Query, class Probe>
   void walk(const WalkRay& ray, const WalkInterval& interval, Query& query, Probe& probe) const {
     double enter = interval.enter;
@@ -22,8 +27,7 @@ class GlassnerOctree {
 
     while (true) {
       const Leaf leaf = locate(cell, probe);
-      probe.cell_step(leaf.node.count == 0);
-      if (!query.test_leaf(leaf.node.first, leaf.node.count)) return;
+      query.visit(std::span(references_).subspan(leaf.node.first, leaf.node.count));
 
       // Finds the face of the leaf through which the ray leaves: the first of three planes to be crossed.
       CellIndex corner, last;
@@ -40,7 +44,7 @@ class GlassnerOctree {
         }
       }
       enter = std::max(enter, exit);
-      if (!(enter <= interval.leave) || query.over(enter)) return;
+      if (enter > query.last()) return;
 
       // Steps to the finest cell behind that face. Along the other axes it is where the point is, yet
       // neither outside the leaf nor behind the last such cell, whatever the rounding: so every step goes
@@ -59,7 +63,9 @@ class GlassnerOctree {
     }
   }
 
-  std::pair<std::string, std::uint64_t> bytes() const { return {"names", names_.bytes()}; }
+  std::vector<std::pair<std::string, std::uint64_t>> bytes_by_part() const {
+    return {{"names", names_.bytes()}, {"references", references_.capacity() * sizeof(std::uint32_t)}};
+  }
 
  private:
   struct Leaf {
@@ -87,6 +93,7 @@ class GlassnerOctree {
 
   OctreeSpace space_;
   OctreeNames names_;
+  MeteredVector<std::uint32_t> references_;
 };
 
 }  // namespace raymeter

@@ -1,4 +1,9 @@
 #pragma once
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "accel/octree_cells.h"
 
 namespace raymeter {
@@ -10,7 +15,8 @@ namespace raymeter {
 /// mean of the outer ones, and a direction of 0 needs no infinite arithmetic: it never changes sides.
 class TopDownOctree {
  public:
-  TopDownOctree(OctreeCells& tree, MemoryMeter&) : space_(tree.space), nodes_(std::move(tree.nodes)) {}
+  TopDownOctree(OctreeCells tree, MemoryMeter&)
+      : space_(tree.space), nodes_(std::move(tree.nodes)), references_(std::move(tree.references)) {}
 
   /// As GlassnerOctree::walk.
   template <class Query, class Probe>
@@ -22,8 +28,9 @@ class TopDownOctree {
     visit(state, nodes_[0], {0, 0, 0}, space_.cells, interval.enter, interval.leave);
   }
 
-  std::pair<std::string, std::uint64_t> bytes() const {
-    return {"nodes", nodes_.capacity() * sizeof(OctreeNode)};
+  std::vector<std::pair<std::string, std::uint64_t>> bytes_by_part() const {
+    return {{"nodes", nodes_.capacity() * sizeof(OctreeNode)},
+            {"references", references_.capacity() * sizeof(std::uint32_t)}};
   }
 
  private:
@@ -40,8 +47,8 @@ class TopDownOctree {
   bool visit(const Walk<Query, Probe>& walk, const OctreeNode& node, const CellIndex& corner,
              std::int32_t size, double enter, double leave) const {
     if (!node.is_inner()) {
-      walk.probe.cell_step(node.count == 0);
-      return walk.query.test_leaf(node.first, node.count);
+      walk.query.visit(std::span(references_).subspan(node.first, node.count));
+      return true;
     }
     walk.probe.inner_step();
 
@@ -74,7 +81,7 @@ class TopDownOctree {
                  next))
         return false;
       if (next_axis < 0) return true;
-      if (walk.query.over(next)) return false;
+      if (next > walk.query.last()) return false;
       enter = next;
       half |= 1u << next_axis;
     }
@@ -82,6 +89,7 @@ class TopDownOctree {
 
   OctreeSpace space_;
   MeteredVector<OctreeNode> nodes_;
+  MeteredVector<std::uint32_t> references_;
 };
 
 }  // namespace raymeter
