@@ -134,7 +134,8 @@ Grades grade(const Scene& scene, const RayBatch& batch, const Truth& truth, cons
       ++grades.wrong;
     } else if (!given) {
       ++grades.not_given;
-    } else if (closest && row.answers.hits[ray].primitive == truth.answers.hits[ray].primitive &&
+    } else if (closest && truth.answers.hits[ray].found() &&
+               row.answers.hits[ray].primitive == truth.answers.hits[ray].primitive &&
                std::abs(double(row.answers.hits[ray].t) - double(truth.answers.hits[ray].t)) <=
                    t_bound(scene, batch.rays[ray], row.answers.hits[ray].primitive,
                            truth.answers.hits[ray].t)) {

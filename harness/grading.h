@@ -10,7 +10,7 @@ namespace raymeter {
 /// How an answer stands to the truth, from harmless to bad. An answer gets the first that is true of it; one
 /// that contradicts the truth about several primitives gets the last of theirs. Formulas: dispute.h.
 enum class Grade : std::uint8_t {
-  right,         ///< bit-identical
+  right,         ///< bit-identical (or, of a within_bound row, a miss with whatever t)
   within_bound,  ///< the t of a float kernel, within its error bound
   tie,           ///< another primitive, whose exact t is within 2 ulp
   edge,          ///< a primitive passed within 2^-20 (barycentric) of its edge

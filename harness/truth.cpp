@@ -31,8 +31,8 @@ bool contradicts(const Scene& scene, const RayBatch& batch, const BatchAnswers& 
   if (batch.query == QueryKind::any) return row.occluded[ray] != occlusion_not_answered;
   const Hit &a = candidate.hits[ray], &b = row.hits[ray];
   if (b.primitive == not_answered) return false;
-  return a.primitive != b.primitive ||
-         !(std::abs(double(a.t) - double(b.t)) <= t_bound(scene, batch.rays[ray], a.primitive, a.t));
+  if (!a.found() || a.primitive != b.primitive) return a.found() || b.found();
+  return !(std::abs(double(a.t) - double(b.t)) <= t_bound(scene, batch.rays[ray], a.primitive, a.t));
 }
 
 /// `count` different indices below `size`, in ascending order (Floyd's method would do without the array; the

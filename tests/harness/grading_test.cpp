@@ -77,6 +77,23 @@ TEST(Grading, OfTheTruthIsRight) {
   EXPECT_EQ(grade_of(scene, forward(0.75f, 0.75f), clear), Grade::right);
 }
 
+TEST(Grading, AMissIsAMissWhateverItsT) {
+  const Scene scene = scene_of({facing(0)});
+  RayBatch batch;
+  batch.rays = {forward(0.75f, 0.75f)};
+  BatchAnswers answers;
+  answers.hits = {{7, no_primitive}};
+  EXPECT_EQ(grade_row(scene, batch, answers, Answers::within_bound), Grade::right);
+  EXPECT_EQ(grade_row(scene, batch, answers, Answers::exact), Grade::wrong);
+  // Nor does a large batch take it for a contradiction.
+  TruthSettings settings;
+  settings.test_budget = 0;
+  settings.sample = 0;
+  const BatchAnswers proved = brute_force(scene, batch.rays, batch.query);
+  const std::vector<Row> rows = {{proved, Answers::exact}, {answers, Answers::within_bound}};
+  EXPECT_EQ(establish_truth(scene, batch, rows, settings).known, 1u);
+}
+
 TEST(Grading, LastBitsOfTAreWithinBound) {
   const Scene scene = scene_of({facing(0)});
   const Ray ray = forward(0.25f, 0.25f);
