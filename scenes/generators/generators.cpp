@@ -5,7 +5,8 @@
 namespace raymeter {
 
 std::span<const SceneGenerator> scene_generators() {
-  static const std::vector<SceneGenerator> generators{soup_generator()};
+  static const std::vector<SceneGenerator> generators{soup_generator(), terrain_generator(),
+                                                      clusters_generator()};
   return generators;
 }
 
