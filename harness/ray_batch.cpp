@@ -134,7 +134,8 @@ RayBatch make_primary(const Scene& scene, const BatchSettings& settings) {
   const CameraRays rays(camera, size.width, size.height);
   const double middle = size.pixel_corners ? 0 : 0.5;
   for (const std::uint32_t pixel : pixel_order(size, settings.order, settings.seed)) {
-    Ray ray = rays.through(pixel % size.columns() + middle, pixel / size.columns() + middle);
+    const std::uint32_t column = pixel % size.columns(), row = pixel / size.columns();
+    Ray ray = rays.through(column + middle, row + middle);
     ray.origin = flushed(ray.origin);
     ray.direction = flushed(ray.direction);
     batch.rays.push_back(ray);

@@ -9,7 +9,6 @@ namespace raymeter {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 Registry registry() {
   Registry all;
