@@ -88,7 +88,7 @@ StructureKind octree_kind() {
       .answers = Answers::exact,
       .parameters = {{"leaf", ParameterType::integer, "8",
                       "primitives that a cell may hold without being split", 1, 1e6},
-                     {"depth", ParameterType::integer, "10", "levels below the root, at most", 0, 20},
+                     {"depth", ParameterType::integer, "14", "levels below the root, at most", 0, 20},
                      {.name = "traversal",
                       .type = ParameterType::choice,
                       .default_value = "glassner",

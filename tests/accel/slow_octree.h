@@ -104,7 +104,7 @@ class SlowOctree {
     bool is_leaf;
   };
 
-  void grow(Node node) {
+  void grow(const Node& node) {
     const int index = static_cast<int>(nodes_.size());
     nodes_.push_back(node);
     if (node.primitives.size() <= leaf_ || node.level == depth_) return;
