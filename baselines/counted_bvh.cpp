@@ -271,7 +271,7 @@ StructureKind counted_bvh_kind() {
           "a BVH by Embree's builder, walked and counted by us",
           "Embree's rtcBuildBVH (Wald et al. 2014); Ize 2013",
           Answers::exact,
-          {{"branching", ParameterType::integer, "2", "children of a node", 2, max_branching}},
+          {{"branching", ParameterType::integer, "8", "children of a node", 2, max_branching}},
           [](const Arguments& arguments, const BuildInput& input) {
             return std::make_unique<CountedBvh>(arguments, input);
           }};
