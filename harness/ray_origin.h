@@ -23,15 +23,12 @@ struct SurfaceStart {
 ///   - rounding the shifted point to float adds u |p_i|, flushing denormals FLT_MIN.
 /// Off the plane these make at most  e = sum of |n_i| (u |t d_i| + u |p_i| + FLT_MIN),  n being the unit
 /// normal. The point is shifted by 4 e along n: one e to lie on the right side of a triangle's plane for
-/// certain, the others for the rounding of n, and so that kernels in float, which other tracers have, agree
-/// about the side.
-///
-/// A quadric bends away from its tangent plane: there the shift is doubled until the surface's equation,
-/// evaluated in double, says that the point is on the right side.
+/// certain, the others for the rounding of n, for the bend of a quadric, and so that kernels in float, which
+/// other tracers have, agree about the side.
 ///
 /// What the offset can't and needn't prevent: where two surfaces meet at an edge that is concave, a ray may
-/// start within 4 e of the other one, or behind it, and hit it at a tiny t or miss it. That is the answer to
-/// this ray, the same for every structure.
+/// start within 4 e of the other one, or behind it, and hit it at a tiny t or miss it; so where the inside of
+/// a quadric is narrower than that. That is the answer to this ray, the same for every structure.
 std::optional<SurfaceStart> leave_surface(const Scene& scene, const Ray& ray, const Hit& hit);
 
 /// Denormals and -0 become +0.

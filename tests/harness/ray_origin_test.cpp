@@ -138,6 +138,28 @@ TEST(LeaveSurface, StaysOnTheViewersSideOfQuadrics) {
   EXPECT_GT(from_inside, 500);
 }
 
+TEST(LeaveSurface, StaysOutsideSpheresNearlyAsSmallAsTheRoundingOfTheirPlace) {
+  Random random(4);
+  int hits = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Quadric sphere{QuadricKind::sphere,
+                         Vec3{100, 200, -50} + random_point(random, 1),
+                         random.uniform(1e-5f, 1e-4f),
+                         {},
+                         0};
+    const Vec3 from = sphere.base + random_point(random, 1);
+    const Ray ray{from, 0, sphere.base + random_point(random, sphere.base_radius) - from};
+    const Hit hit{decide(ray, sphere), 0};
+    if (hit.t == no_hit) continue;
+    ++hits;
+    const auto start = leave_surface(scene_of(sphere), ray, hit);
+    ASSERT_TRUE(start);
+    const auto w = exact(start->origin) - exact(sphere.base);
+    ASSERT_GT(dot(w, w), Exact(sphere.base_radius) * Exact(sphere.base_radius)) << i;
+  }
+  EXPECT_GT(hits, 1000);
+}
+
 TEST(LeaveSurface, NothingFromMissesTipsAndBeyondFloat) {
   const Quadric cone{QuadricKind::cone, {0, 0, 0}, 1, {0, 0, 1}, 0};
   EXPECT_FALSE(leave_surface(scene_of(cone), {{0, 0, 3}, 0, {0, 0, -1}}, Hit{}));
