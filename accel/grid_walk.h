@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -17,44 +18,60 @@ namespace raymeter {
 template <class Visit>
 inline void walk_cells(const CellGrid& grid, const WalkRay& walk, const WalkInterval& interval,
                        Visit&& visit) {
-  double first[3], delta[3], plane[3], next[3], step[3];
-  std::uint64_t stride[3];
-  std::uint32_t remaining[3];  // layers ahead on each axis
-  const std::uint64_t strides[3] = {1, grid.n[0], std::uint64_t{grid.n[0]} * grid.n[1]};
-  std::uint64_t cell = 0;
+  struct Axis {
+    double next;              // t at which the plane ahead is crossed
+    double plane, step;       // its index, and +1 or -1
+    double first, delta;      // t at plane 0, and from plane to plane
+    std::uint64_t stride;     // from cell to cell, modulo 2^64
+    std::uint32_t remaining;  // layers ahead
+
+    /// False where the plane ahead bounds the grid.
+    bool cross() {
+      if (remaining == 0) return false;
+      --remaining;
+      plane += step;
+      next = first + plane * delta;
+      return true;
+    }
+  };
 
   // Find the cell where the interval begins and, on each axis, the plane that the ray crosses next.
-  for (int axis = 0; axis < 3; ++axis) {
+  std::uint64_t cell = 0;
+  const auto begin = [&](int axis, std::uint64_t stride) {
     const double d = walk.direction[axis];
     const std::uint32_t layer = grid.layer(axis, walk.origin[axis] + interval.enter * d);
-    cell += strides[axis] * layer;
+    cell += stride * layer;
     const bool up = d > 0;
-    step[axis] = up ? 1 : -1;
-    stride[axis] = up ? strides[axis] : -strides[axis];
-    remaining[axis] = up ? grid.n[axis] - 1 - layer : layer;
-    plane[axis] = up ? layer + 1.0 : layer;
-    if (d == 0) {  // never crosses a plane
-      first[axis] = std::numeric_limits<double>::infinity();
-      delta[axis] = 0;
-    } else {
-      first[axis] = (grid.low[axis] - walk.origin[axis]) * walk.inverse[axis];
-      delta[axis] = grid.size[axis] * walk.inverse[axis];
-    }
-    next[axis] = first[axis] + plane[axis] * delta[axis];
-  }
+    Axis a;
+    a.step = up ? 1 : -1;
+    a.stride = up ? stride : -stride;
+    a.remaining = up ? grid.n[std::size_t(axis)] - 1 - layer : layer;
+    a.plane = up ? layer + 1.0 : layer;
+    // A ray along the planes never crosses one.
+    a.first = d == 0 ? std::numeric_limits<double>::infinity()
+                     : (grid.low[axis] - walk.origin[axis]) * walk.inverse[axis];
+    a.delta = d == 0 ? 0 : grid.size[axis] * walk.inverse[axis];
+    a.next = a.first + a.plane * a.delta;
+    return a;
+  };
+  Axis x = begin(0, 1), y = begin(1, grid.n[0]), z = begin(2, std::uint64_t{grid.n[0]} * grid.n[1]);
 
   double enter = interval.enter;
   while (true) {
     // The ray leaves the cell where it crosses the nearest of the three planes ahead.
-    const int lesser = next[1] < next[0] ? 1 : 0;
-    const int axis = next[2] < next[lesser] ? 2 : lesser;
-    const double leave = next[axis];
-    if (leave > visit(cell, enter, leave < interval.leave ? leave : interval.leave)) return;
+    const double leave = std::min(std::min(x.next, y.next), z.next);
+    if (leave > visit(cell, enter, std::min(leave, interval.leave))) return;
     // Step across that plane, unless it bounds the grid.
-    if (remaining[axis]-- == 0) return;
-    cell += stride[axis];
-    plane[axis] += step[axis];
-    next[axis] = first[axis] + plane[axis] * delta[axis];
+    if (x.next == leave) {
+      if (!x.cross()) return;
+      cell += x.stride;
+    } else if (y.next == leave) {
+      if (!y.cross()) return;
+      cell += y.stride;
+    } else {
+      if (!z.cross()) return;
+      cell += z.stride;
+    }
     enter = leave;
   }
 }
