@@ -1,5 +1,8 @@
 #include "accel/cell_overlap.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -34,6 +37,27 @@ bool SphereOverlap::meets(const Vec3d& centre) const {
     farthest += (distance + reach) * (distance + reach);
   }
   return nearest <= radius_ * radius_ && radius_ * radius_ <= farthest;
+}
+
+CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, ChosenResolution& chosen) {
+  const std::uint64_t limit = registration_limit(scene.primitive_count());
+  const Resolution asked = chosen.n;
+  while (true) {
+    const CellGrid grid(space.low, space.high, chosen.n);
+    std::uint64_t work = 0;
+    for (std::uint32_t p = 0; p < scene.primitive_count() && work <= limit; ++p)
+      work += cells_of_box(grid, scene.bounds_of(p), space.margin).cells();
+    if (work <= limit) {
+      if (chosen.n != asked) {
+        if (!chosen.note.empty()) chosen.note += "; ";
+        chosen.note += fmt::format("clamped from {} to {} (limit {} cells in all primitives' boxes)",
+                                   fmt::join(asked, "x"), fmt::join(chosen.n, "x"), limit);
+        chosen.clamped = true;
+      }
+      return grid;
+    }
+    for (auto& n : chosen.n) n = std::max(1u, n * 4 / 5);
+  }
 }
 
 }  // namespace raymeter

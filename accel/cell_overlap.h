@@ -1,10 +1,12 @@
 #pragma once
 // Which cells of a grid a primitive must be registered in. All tests here may say yes too often, never no
 // wrongly: a cell counts as met when the primitive meets its box grown by the margin of walk_space.h.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "accel/cell_grid.h"
+#include "accel/grid_resolution.h"
 #include "accel/walk_space.h"
 #include "scenes/geometry/primitives.h"
 #include "scenes/scene.h"
@@ -66,6 +68,9 @@ class SphereOverlap {
 /// Layers first..last of a grid on each axis.
 struct CellRange {
   std::array<std::uint32_t, 3> first, last;
+  std::uint64_t cells() const {
+    return (std::uint64_t{last[0]} - first[0] + 1) * (last[1] - first[1] + 1) * (last[2] - first[2] + 1);
+  }
 };
 
 /// The cells whose boxes, grown by `margin`, meet `box`.
@@ -77,6 +82,15 @@ inline CellRange cells_of_box(const CellGrid& grid, const Bounds& box, double ma
   }
   return range;
 }
+
+/// Registering looks at every cell of every primitive's box: at so many, at most.
+inline std::uint64_t registration_limit(std::uint64_t primitives) {
+  return std::max(std::uint64_t{1} << 26, 64 * primitives);
+}
+
+/// The grid of the chosen resolution over `space`; made coarser, with a note in `chosen`, where registering
+/// the scene's primitives would exceed the limit (many primitives, each as large as the scene).
+CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, ChosenResolution& chosen);
 
 /// Calls visit(cell) for each cell of the range whose centre satisfies `meets`.
 template <class Meets, class Visit>

@@ -43,11 +43,11 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
     const Scene& scene = input.scene;
     space_ = walk_space_of(scene);
     const auto limits = ResolutionLimits::within(input.memory_limit, 4 * space_.margin);
-    const auto chosen = choose_resolution(options.top, shape_sizes(scene), limits);
-    stats_.note = chosen.note;
+    auto chosen = choose_resolution(options.top, shape_sizes(scene), limits);
 
     // Register every primitive in the cells of the top level.
-    grid_ = CellGrid(space_.low, space_.high, chosen.n);
+    grid_ = registrable_grid(scene, space_, chosen);
+    stats_.note = chosen.note;
     top_lists_.build(cell_count(chosen.n), [&](auto add) {
       for (std::uint32_t p = 0; p < scene.primitive_count(); ++p)
         for_each_cell_of(scene, p, grid_, space_.margin, options.fit, [&](std::uint64_t c) { add(c, p); });
@@ -125,22 +125,28 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
       if (top_lists_[c].size() > options.threshold) subgrid_of_[c] = crowded++;
     subgrids_.resize(crowded);
 
-    // When all sub-grids together have too many cells, make all of them coarser.
+    // When all sub-grids together have too many cells, or look at too many while registering, make all of
+    // them coarser.
+    const std::uint64_t work_limit = registration_limit(top_lists_.references());
     ResolutionRule leaf = options.leaf;
     while (true) {
-      std::uint64_t cells = 0, clamped = 0;
+      std::uint64_t cells = 0, clamped = 0, work = 0;
       for (std::uint64_t c = 0; c < top_lists_.cells(); ++c) {
         if (subgrid_of_[c] == no_subgrid) continue;
         const CellBox box = box_of(c);
         const auto chosen = choose_resolution(leaf, sizes_in(box, top_lists_[c]), limits);
         clamped += chosen.clamped;
-        subgrids_[subgrid_of_[c]] = {CellGrid(box.low, box.high, chosen.n), cells};
+        const CellGrid grid(box.low, box.high, chosen.n);
+        subgrids_[subgrid_of_[c]] = {grid, cells};
         cells += cell_count(chosen.n);
+        for (const std::uint32_t p : top_lists_[c])
+          work += cells_of_box(grid, scene().bounds_of(p), space_.margin).cells();
       }
-      if (cells <= limits.cells) {
+      if (cells <= limits.cells && work <= work_limit) {
         if (leaf.value != options.leaf.value)
-          add_note(fmt::format("second level clamped from {} to {} (limit {} cells)", options.leaf.value,
-                               leaf.value, limits.cells));
+          add_note(
+              fmt::format("leaf-density clamped from {} to {} (limit {} cells, {} in all primitives' boxes)",
+                          options.leaf.value, leaf.value, limits.cells, work_limit));
         if (clamped) add_note(fmt::format("{} sub-grids clamped", clamped));
         return cells;
       }

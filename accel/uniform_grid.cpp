@@ -23,8 +23,8 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
     const Scene& scene = input.scene;
     space_ = walk_space_of(scene);
     const auto limits = ResolutionLimits::within(input.memory_limit, 4 * space_.margin);
-    const auto chosen = choose_resolution(options.rule, shape_sizes(scene), limits);
-    grid_ = CellGrid(space_.low, space_.high, chosen.n);
+    auto chosen = choose_resolution(options.rule, shape_sizes(scene), limits);
+    grid_ = registrable_grid(scene, space_, chosen);
     lists_.build(cell_count(chosen.n), [&](auto add) {
       for (std::uint32_t p = 0; p < scene.primitive_count(); ++p)
         for_each_cell_of(scene, p, grid_, space_.margin, options.fit, [&](std::uint64_t c) { add(c, p); });

@@ -215,6 +215,23 @@ inline void expect_brute_force(const Structure& structure, const Scene& scene, s
   }
 }
 
+/// What one closest-hit query costs.
+inline RayCounters count(const Structure& structure, const Ray& ray) {
+  RayCounters counters;
+  Hit hit;
+  structure.count_closest({{&ray, 1}}, {&hit, 1}, {&counters, 1});
+  return counters;
+}
+
+/// Two triangles across the x axis, at x = 0.5 (where y + z <= 1) and 3.5 (where y + z >= 1).
+inline Scene two_walls() {
+  SceneData data;
+  data.name = "two walls";
+  data.vertices = {{0.5f, 0, 0}, {0.5f, 1, 0}, {0.5f, 0, 1}, {3.5f, 1, 1}, {3.5f, 1, 0}, {3.5f, 0, 1}};
+  data.triangles = {{0, 1, 2}, {3, 4, 5}};
+  return Scene(std::move(data));
+}
+
 /// Thousands of scenes, each with rays at it, through a few specs.
 inline void expect_brute_force_on_many_scenes(std::span<const std::string> specs, std::uint64_t scenes) {
   const std::pair<float, Vec3> places[] = {
