@@ -59,22 +59,29 @@ inline float norm(const Vec3& v) {
   return std::abs(v.x) + std::abs(v.y) + std::abs(v.z) + tiny;
 }
 
+/// Certainly no hit: the line in direction d (FilterRay::direction) passes outside the triangle with edges e1
+/// and e2 from a vertex, where s = origin - vertex. Without a branch, so that loops over it are vectorised.
+inline bool passes_outside(const Vec3& d, const Vec3& s, const Vec3& e1, const Vec3& e2) {
+  // The line's barycentric coordinates where it meets the plane, times det, are certainly of different signs.
+  const Vec3 p = cross(d, e2), q = cross(s, e1);
+  const float det = dot(e1, p), u = dot(s, p), v = dot(d, q), w = det - u - v;
+  const float edge = std::max(norm(e1), norm(e2)), reach = norm(s);
+  const float area = edge * (edge + 2 * reach), error = 0x1.8p-20f * area;
+  const float least = std::min(std::min(u, v), w), greatest = std::max(std::max(u, v), w);
+  return bool((least < -error) & (greatest > error) & (area < large));
+}
+
 }  // namespace filter
 
 inline bool may_hit(const FilterRay& ray, const Triangle& triangle, float tmax) {
-  // The line's barycentric coordinates where it meets the plane, times det.
   const Vec3& d = ray.direction;
   const Vec3 e1 = triangle.b - triangle.a, e2 = triangle.c - triangle.a, s = ray.ray.origin - triangle.a;
-  const Vec3 p = cross(d, e2), q = cross(s, e1);
-  const float det = dot(e1, p), u = dot(s, p), v = dot(d, q), w = det - u - v;
-
-  // Certainly of different signs: the line passes outside.
-  const float edge = std::max(filter::norm(e1), filter::norm(e2)), reach = filter::norm(s);
-  const float area = edge * (edge + 2 * reach), error = 0x1.8p-20f * area;
-  const float least = std::min(std::min(u, v), w), greatest = std::max(std::max(u, v), w);
-  if (least < -error && greatest > error && area < filter::large) return false;
+  if (filter::passes_outside(d, s, e1, e2)) return false;
 
   // t = height / det may lie in (tnear, tmax].
+  const Vec3 p = cross(d, e2), q = cross(s, e1);
+  const float det = dot(e1, p), edge = std::max(filter::norm(e1), filter::norm(e2)), reach = filter::norm(s);
+  const float area = edge * (edge + 2 * reach);
   const float height = dot(e2, q), volume = edge * edge * reach, det_error = 0x1p-20f * edge * edge;
   if (!(area < filter::large && volume < filter::large && std::abs(det) > det_error)) return true;
   // In double, for the exponents of the products.
