@@ -1,26 +1,34 @@
 #include "scenes/geometry/primitives.h"
 
+#include <cfloat>
 #include <cmath>
+
+#include "scenes/geometry/rounding.h"
 
 namespace raymeter {
 namespace {
 
-/// The nearest floats that enclose [low, high], with room for the rounding of a few double operations.
+/// The greatest float that is not above x and not denormal.
+float float_below(double x) {
+  const float nearest = rounded(x);
+  if (!(nearest > x)) return nearest;
+  return nearest == 0 ? -FLT_MIN : std::nextafter(nearest, -INFINITY);
+}
+
+/// Extends the box by [low, high]. The few roundings on the way there are below 2^-49 of `magnitude`.
 void extend_outward(Bounds& box, int axis, double low, double high, double magnitude) {
   const double margin = magnitude * 0x1p-48;
-  float below = static_cast<float>(low - margin), above = static_cast<float>(high + margin);
-  if (below > low - margin) below = std::nextafter(below, -INFINITY);
-  if (above < high + margin) above = std::nextafter(above, INFINITY);
-  box.low[axis] = std::min(box.low[axis], below);
-  box.high[axis] = std::max(box.high[axis], above);
+  box.low[axis] = std::min(box.low[axis], float_below(low - margin));
+  box.high[axis] = std::max(box.high[axis], -float_below(-(high + margin)));
 }
 
 /// A disc of radius r about p, perpendicular to `axis` (of squared length l2), reaches r * sqrt(1 - a_i^2 /
-/// l2) along coordinate i: (l2 - a_i^2) is summed from the other two so that nothing cancels.
+/// l2) along coordinate i: (l2 - a_i^2) is summed from the other two so that nothing cancels. Without an axis
+/// there is no surface; the box is that of a sphere then.
 void extend_with_disc(Bounds& box, const Vec3& p, double r, const Vec3d& axis, double l2) {
   for (int i = 0; i < 3; ++i) {
     const double u = axis[(i + 1) % 3], v = axis[(i + 2) % 3];
-    const double reach = r * std::sqrt((u * u + v * v) / l2);
+    const double reach = l2 > 0 ? r * std::sqrt((u * u + v * v) / l2) : r;
     extend_outward(box, i, p[i] - reach, p[i] + reach, std::abs(double(p[i])) + reach);
   }
 }

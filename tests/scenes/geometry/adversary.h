@@ -209,4 +209,13 @@ inline void tempt_interval(Random& random, Ray& ray, float t) {
   }
 }
 
+/// No component that becomes denormal or infinite when it is scaled by 2^60 or 2^-60.
+inline bool bears_scaling(const Ray& ray) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float size = std::abs(ray.direction[axis]);
+    if (size != 0 && (size < 1e-6f || size > 1e6f)) return false;
+  }
+  return true;
+}
+
 }  // namespace raymeter::adversary

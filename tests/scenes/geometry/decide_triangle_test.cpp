@@ -1,9 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "scenes/base/float_mode.h"
 #include "scenes/geometry/decide.h"
+#include "scenes/geometry/filter.h"
 #include "tests/scenes/geometry/adversary.h"
 #include "tests/scenes/geometry/exact_reference.h"
 
@@ -43,6 +49,143 @@ TEST(DecideTriangle, IsTheExactAnswerRounded) {
     ASSERT_EQ(decide_flushing(ray, triangle), truth) << show(ray, triangle);
   }
   EXPECT_GT(hits, 20000);
+}
+
+const Triangle floor_at_1{{-1, -1, 1}, {3, -1, 1}, {-1, 3, 1}};
+
+TEST(DecideTriangle, RoundsTiesToEven) {
+  const auto from = [](float z) { return decide({{0, 0, z}, 0, {0, 0, 1}}, floor_at_1); };
+  EXPECT_EQ(from(-0x1p-24f), 1.0f);
+  EXPECT_EQ(from(-0x1.000002p-24f), 1 + 0x1p-23f);
+  EXPECT_EQ(from(-0x1.fffffep-25f), 1.0f);
+  EXPECT_EQ(from(-0x3p-24f), 1 + 0x2p-23f);
+}
+
+TEST(DecideTriangle, RoundsToZeroBelowTheNormalFloatsAndHitsNothingBeyondThem) {
+  const auto at = [](float z, float speed, float tnear) {
+    const Triangle triangle{{-1, -1, z}, {3, -1, z}, {-1, 3, z}};
+    const FlushDenormals mode;
+    const float flushing = decide({{0, 0, 0}, tnear, {0, 0, speed}}, triangle);
+    EXPECT_EQ(flushing, decide_flushing({{0, 0, 0}, tnear, {0, 0, speed}}, triangle));
+    return flushing;
+  };
+  EXPECT_EQ(at(0x1p-100f, 0x1p26f, 0), 0x1p-126f);
+  EXPECT_EQ(at(0x1p-100f, 0x1p27f, -1), 0.0f);
+  EXPECT_EQ(at(0x1p-100f, 0x1p27f, 0), no_hit);
+  EXPECT_EQ(at(0x1.fffffep-100f, 0x1p27f, -1), 0.0f);
+  EXPECT_EQ(at(0x1.fffffep100f, 0x1p-27f, 0), FLT_MAX);
+  EXPECT_EQ(at(0x1p101f, 0x1p-27f, 0), no_hit);
+  EXPECT_EQ(at(-0x1p101f, 0x1p-27f, -infinity), no_hit);
+  EXPECT_EQ(at(1e-40f, 1, -1), 0.0f) << "a denormal counts as zero";
+}
+
+TEST(DecideTriangle, IntervalIsOpenAtTnearAndClosedAtTfar) {
+  Ray ray{{0, 0, 0}, 0, {0, 0, 0.5f}};
+  ray.tfar = 2;
+  EXPECT_EQ(decide(ray, floor_at_1), 2.0f);
+  ray.tfar = std::nextafter(2.0f, 0.0f);
+  EXPECT_EQ(decide(ray, floor_at_1), no_hit);
+  ray.tfar = infinity, ray.tnear = 2;
+  EXPECT_EQ(decide(ray, floor_at_1), no_hit);
+  ray.tnear = std::nextafter(2.0f, 0.0f);
+  EXPECT_EQ(decide(ray, floor_at_1), 2.0f);
+}
+
+TEST(DecideTriangle, WhatIsNoRayAndWhatIsNoTriangleMisses) {
+  const Ray good{{0, 0, 0}, 0, {0, 0, 1}};
+  ASSERT_EQ(decide(good, floor_at_1), 1.0f);
+  for (const float bad : {infinity, -infinity, std::nanf("")}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Ray ray = good;
+      ray.origin[axis] = bad;
+      EXPECT_EQ(decide(ray, floor_at_1), no_hit);
+      ray = good, ray.direction[axis] = bad;
+      EXPECT_EQ(decide(ray, floor_at_1), no_hit);
+      for (Vec3 Triangle::* corner : {&Triangle::a, &Triangle::b, &Triangle::c}) {
+        Triangle triangle = floor_at_1;
+        (triangle.*corner)[axis] = bad;
+        EXPECT_EQ(decide(good, triangle), no_hit);
+      }
+    }
+  }
+  for (float Ray::* end : {&Ray::tnear, &Ray::tfar}) {
+    Ray ray = good;
+    ray.*end = std::nanf("");
+    EXPECT_EQ(decide(ray, floor_at_1), no_hit);
+  }
+  EXPECT_EQ(decide({{0, 0, 1}, -1, {0, -0.0f, 0}}, floor_at_1), no_hit);
+  EXPECT_EQ(decide({{0, 0, 1}, -1, {0, 1e-40f, 0}}, floor_at_1), no_hit);
+  EXPECT_EQ(decide({{-4, 0, 1}, 0, {1, 0, 0}}, floor_at_1), no_hit) << "coplanar";
+  EXPECT_EQ(decide(good, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}), no_hit);
+  EXPECT_EQ(decide(good, {{-1, 0, 1}, {0, 0, 1}, {5, 0, 1}}), no_hit);
+}
+
+TEST(DecideTriangle, DoesNotDependOnTheUnitOfLength) {
+  Random random(7);
+  for (int i = 0; i < 5000; ++i) {
+    const auto style = i % 2 ? adversary::Style::natural : adversary::Style::small_integers;
+    const Triangle triangle = adversary::triangle(random, style);
+    const Ray ray = adversary::ray_towards(random, style, adversary::point_on(random, triangle));
+    if (!adversary::bears_scaling(ray)) continue;
+    const float t = decide(ray, triangle);
+    for (const float scale : {0x1p-60f, 0x1p-3f, 0x1p60f}) {
+      const Triangle scaled{scale * triangle.a, scale * triangle.b, scale * triangle.c};
+      ASSERT_EQ(decide({scale * ray.origin, 0, scale * ray.direction}, scaled), t) << show(ray, triangle);
+      if (t > 1e-10f && t < 1e10f) {
+        ASSERT_EQ(decide({ray.origin, 0, scale * ray.direction}, triangle), t / scale) << show(ray, triangle);
+      }
+    }
+  }
+}
+
+// From inside a closed mesh of 39,600 triangles no ray escapes through a vertex or an edge.
+TEST(DecideTriangle, AClosedMeshIsWatertight) {
+  constexpr int stacks = 100, slices = 200;
+  std::vector<Vec3> vertices{{0, 0, 1}, {0, 0, -1}};
+  for (int i = 1; i < stacks; ++i)
+    for (int j = 0; j < slices; ++j) {
+      const double polar = 3.14159265358979 * i / stacks, around = 2 * 3.14159265358979 * j / slices;
+      vertices.push_back(to_float(
+          {std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar)}));
+    }
+  const auto index = [&](int i, int j) {
+    return i == 0 ? 0 : i == stacks ? 1 : 2 + (i - 1) * slices + j % slices;
+  };
+  std::vector<std::array<int, 3>> triangles;
+  for (int i = 0; i < stacks; ++i)
+    for (int j = 0; j < slices; ++j) {
+      const int a = index(i, j), b = index(i, j + 1), c = index(i + 1, j), d = index(i + 1, j + 1);
+      if (i > 0) triangles.push_back({a, b, d});
+      if (i < stacks - 1) triangles.push_back({a, d, c});
+    }
+  ASSERT_EQ(triangles.size(), 39600u);
+
+  // Only the triangles at the vertex or edge aimed at can be hit: the rest are thousands of ulps away.
+  std::vector<std::vector<int>> at_vertex(vertices.size());
+  std::map<std::pair<int, int>, std::vector<int>> at_edge;
+  for (int i = 0; i < int(triangles.size()); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int from = triangles[i][k], to = triangles[i][(k + 1) % 3];
+      at_vertex[from].push_back(i);
+      at_edge[std::minmax(from, to)].push_back(i);
+    }
+  int misses = 0;
+  const auto aim = [&](const Vec3& origin, const Vec3& target, const std::vector<int>& candidates) {
+    const Ray ray{origin, 0, target - origin};
+    misses += std::none_of(candidates.begin(), candidates.end(), [&](int i) {
+      const auto& [a, b, c] = triangles[i];
+      const Triangle triangle{vertices[a], vertices[b], vertices[c]};
+      return may_hit(FilterRay(ray), triangle, no_hit) && decide(ray, triangle) != no_hit;
+    });
+  };
+  for (const Vec3& origin : {Vec3{0, 0, 0}, Vec3{0.1f, -0.2f, 0.3f}, Vec3{0.6f, 0.6f, -0.5f}}) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) aim(origin, vertices[i], at_vertex[i]);
+    for (const auto& [edge, candidates] : at_edge) {
+      ASSERT_EQ(candidates.size(), 2u);
+      aim(origin, 0.5f * vertices[edge.first] + 0.5f * vertices[edge.second], candidates);
+    }
+  }
+  EXPECT_EQ(misses, 0);
 }
 
 }  // namespace
