@@ -57,7 +57,7 @@ TEST(Spec, EscapesReturn) {
 TEST(Spec, ComplaintsSayWhatWouldBeRight) {
   EXPECT_THAT(complaint("grid:cell=4"), testing::HasSubstr("there are: cells, amount"));
   EXPECT_THAT(complaint("grid:cells=4x4"), testing::HasSubstr("three joined by x"));
-  EXPECT_THAT(complaint("grid:cells=0"), testing::HasSubstr("1..4096"));
+  EXPECT_THAT(complaint("grid:cells=4097"), testing::HasSubstr("1..4096"));
   EXPECT_THAT(complaint("grid:amount=nan"), testing::HasSubstr("0.001..1000"));
   EXPECT_THAT(complaint("grid:rule=wald"), testing::HasSubstr("paper, woo"));
   EXPECT_THAT(complaint("grid:cells=4,8"), testing::HasSubstr("not a list"));
