@@ -12,6 +12,15 @@
 
 namespace raymeter {
 
+/// The number whose bytes begin at `from`, aligned or not.
+template <class T>
+T load(const char* from, std::endian order) {
+  std::array<char, sizeof(T)> raw{};
+  std::memcpy(raw.data(), from, sizeof(T));
+  if (order != std::endian::native) std::ranges::reverse(raw);
+  return std::bit_cast<T>(raw);
+}
+
 /// Reads numbers from the bytes of a file, never beyond their end.
 class ByteCursor {
  public:
@@ -25,11 +34,9 @@ class ByteCursor {
   template <class T>
   T read() {
     if (bytes_left() < sizeof(T)) fail("the file ends here, in the middle of its data");
-    std::array<char, sizeof(T)> raw{};
-    std::memcpy(raw.data(), bytes_.data() + position_, sizeof(T));
-    if (order_ != std::endian::native) std::ranges::reverse(raw);
+    const T value = load<T>(bytes_.data() + position_, order_);
     position_ += sizeof(T);
-    return std::bit_cast<T>(raw);
+    return value;
   }
   /// `count` is at most bytes_left().
   void skip(std::size_t count) { position_ += count; }
