@@ -201,6 +201,9 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
 
 }  // namespace
 
+// The defaults are near the best that was measured on teapot12 and gears4 (SPD) and a soup of 60,000
+// triangles: a coarse top level, which costs few steps where nothing is, and sub-grids of the density of a
+// good flat grid.
 StructureKind two_level_grid_kind() {
   auto parameters = resolution_parameters("density 0.1");
   parameters.push_back({"threshold", ParameterType::integer, "8",
