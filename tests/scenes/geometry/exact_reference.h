@@ -143,7 +143,7 @@ inline float decide(const Ray& ray, const Quadric& quadric) {
     visit(r0), visit(r1);
   };
   each([&](const Integer& x) {
-    if (x != 0) spare = std::min<unsigned>(spare, lsb(abs(x)));
+    if (x != 0) spare = std::min(spare, static_cast<unsigned>(lsb(abs(x))));
   });
   each([&](Integer& x) { x = x < 0 ? -Integer(-x >> spare) : Integer(x >> spare); });
 
