@@ -24,10 +24,10 @@ struct BuildInput {
 /// A kind of structure, as the registry knows it.
 struct StructureKind {
   std::string name;
-  std::string summary;  ///< one line
-  std::string source;   ///< where the algorithm comes from: author, year
+  std::string summary = {};  ///< one line
+  std::string source = {};   ///< where the algorithm comes from: author, year
   Answers answers = Answers::exact;
-  std::vector<Parameter> parameters;
+  std::vector<Parameter> parameters = {};
   std::function<std::unique_ptr<Structure>(const Arguments&, const BuildInput&)> build;
 };
 

@@ -42,6 +42,7 @@ struct StructureStats {
   std::uint64_t bytes = 0;                    ///< held after the build, without the scene
   std::uint64_t peak_bytes = 0;               ///< most held at once while building
   std::vector<std::pair<std::string, std::uint64_t>> bytes_by_part;
+  std::string isa;  ///< instruction set of the traversal, where it chooses one; empty: what the build is for
   std::string
       note;  ///< what was clamped or substituted, in words; empty when the spec was followed to the letter
 };

@@ -120,6 +120,7 @@ class EmbreeBvh {
   EmbreeBvh(const Arguments& arguments, const BuildInput& input)
       : scene_(input.scene),
         memory_(input.memory_limit),
+        isa_(arguments.text("isa") == "default" ? embree_default_isa() : arguments.text("isa")),
         device_(input.threads, arguments.text("isa"), memory_) {
     check_coordinates(scene_, "embree");
     bvh_.reset(rtcNewScene(device_.handle()));
@@ -144,6 +145,7 @@ class EmbreeBvh {
     stats.bytes = memory_.bytes();
     stats.peak_bytes = memory_.peak();
     stats.bytes_by_part = {{"bvh", stats.bytes}};
+    stats.isa = isa_;
     return stats;
   }
 
@@ -179,6 +181,7 @@ class EmbreeBvh {
 
   const Scene& scene_;
   MemoryMeter memory_;
+  std::string isa_;
   EmbreeDevice device_;
   EmbreeDevice::SceneHandle bvh_;  // after the device: freed before it
 };

@@ -13,7 +13,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double unit = 0x1p-24;                  // half an ulp of a float, relative
 constexpr double most_displacement = 0x1p-12;     // of a hit, over its distance
-constexpr double edge_nearness = 0x1p-20;         // barycentric
+constexpr double edge_nearness = 0x1p-20;         // barycentric, at least
+constexpr double most_edge_nearness = 0x1p-10;    // barycentric, however bad a kernel's rounding
 constexpr double grazing_cosine = 0x1p-12;        // between direction and normal
 constexpr double grazing_discriminant = 0x1p-20;  // over the terms that it is the difference of
 constexpr double degenerate_area = 0x1p-20;       // over the longest edge's square
@@ -43,6 +44,15 @@ struct SeenTriangle {
                  b = dot(direction, cross(corners[0], corners[2])),
                  c = dot(direction, cross(corners[1], corners[0])), sum = a + b + c;
     return {a / sum, b / sum, c / sum};
+  }
+
+  /// How far a float kernel's barycentric coordinates may be off. Moeller & Trumbore (1997) compute them as
+  /// (C x D) . e / (N . D), with C a corner, D the direction and e an edge, all rounded to float: to first
+  /// order the numerator is off by 8 u |C||D||e|. Twice that, with the farthest corner and the longest edge.
+  double edge_bound() const {
+    const double bound =
+        16 * unit * farthest * length(direction) * longest_edge / std::abs(dot(normal, direction));
+    return std::clamp(bound, edge_nearness, most_edge_nearness);
   }
 
   Vec3d direction, normal;
@@ -108,18 +118,19 @@ Range near(const Scene& scene, const Ray& ray, std::uint32_t primitive) {
 /// the distance to the nearer rim in axis lengths: negative outside of the primitive.
 struct Crossing {
   double t = 0, inside = 0;
-  bool at_edge() const { return std::abs(inside) <= edge_nearness; }
+  double edge_bound = edge_nearness;
+  bool at_edge() const { return std::abs(inside) <= edge_bound; }
 };
 
 std::vector<Crossing> crossings(const Scene& scene, const Ray& ray, std::uint32_t primitive) {
   std::vector<Crossing> found;
-  const auto add = [&](double t, double inside) {
-    if (std::isfinite(t)) found.push_back({t, inside});
+  const auto add = [&](double t, double inside, double edge_bound = edge_nearness) {
+    if (std::isfinite(t)) found.push_back({t, inside, edge_bound});
   };
   if (scene.is_triangle(primitive)) {
     const SeenTriangle triangle(ray, scene.triangle(primitive));
     const auto coordinates = triangle.barycentric();
-    add(triangle.t(), *std::min_element(coordinates.begin(), coordinates.end()));
+    add(triangle.t(), *std::min_element(coordinates.begin(), coordinates.end()), triangle.edge_bound());
     return found;
   }
   const SeenQuadric quadric(ray, scene.quadric(primitive));

@@ -13,13 +13,14 @@ enum class Grade : std::uint8_t {
   right,         ///< bit-identical (or, of a within_bound row, a miss with whatever t)
   within_bound,  ///< the t of a float kernel, within its error bound
   tie,           ///< another primitive, whose exact t is within 2 ulp
-  edge,          ///< a primitive passed within 2^-20 (barycentric) of its edge
-  grazing,       ///< a primitive passed along its surface
-  at_limit,      ///< a hit as near to tnear or tfar as the kernel's error
-  degenerate,    ///< a triangle thinner than rounding
-  wrong,         ///< contradicts the truth, and nothing above explains it
-  not_given,     ///< the structure did not answer
-  unexplained,   ///< not examined: the truth is unknown, or the budget had run out
+  edge,  ///< a primitive passed so near its edge that a float kernel can't tell the side (2^-20 barycentric,
+         ///< or its error bound)
+  grazing,      ///< a primitive passed along its surface
+  at_limit,     ///< a hit as near to tnear or tfar as the kernel's error
+  degenerate,   ///< a triangle thinner than rounding
+  wrong,        ///< contradicts the truth, and nothing above explains it
+  not_given,    ///< the structure did not answer
+  unexplained,  ///< not examined: the truth is unknown, or the budget had run out
 };
 inline constexpr std::size_t grade_count = 10;
 std::string_view name_of(Grade grade);

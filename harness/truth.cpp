@@ -129,6 +129,14 @@ void prove(const Scene& scene, const RayBatch& batch, std::span<const std::size_
   }
 }
 
+void count_bases(Truth& truth) {
+  const auto of = [&](Basis basis) {
+    return static_cast<std::size_t>(std::count(truth.basis.begin(), truth.basis.end(), basis));
+  };
+  truth.brute_forced = of(Basis::proved);
+  truth.known = truth.basis.size() - of(Basis::unknown);
+}
+
 }  // namespace
 
 BatchAnswers brute_force(const Scene& scene, std::span<const Ray> rays, QueryKind query) {
@@ -176,6 +184,28 @@ std::vector<Hit> all_hits(const Scene& scene, const Ray& ray) {
   return hits;
 }
 
+std::size_t settle_disputes(const Scene& scene, const RayBatch& batch, const Row& row, Truth& truth,
+                            const TruthSettings& settings) {
+  std::vector<std::size_t> disputed;
+  for (std::size_t ray = 0; ray < batch.rays.size(); ++ray)
+    if (truth.basis[ray] == Basis::agreed &&
+        (row.policy == Answers::exact ? !equal_at(truth.answers, row.answers, batch.query, ray)
+                                      : contradicts(scene, batch, truth.answers, row.answers, ray)))
+      disputed.push_back(ray);
+  // What is disputed beyond the budget stays open: nobody's answer is taken for true there.
+  const double cost = std::max<double>(1, static_cast<double>(scene.primitive_count()));
+  const auto affordable = static_cast<std::size_t>(settings.test_budget / cost);
+  for (std::size_t i = affordable; i < disputed.size(); ++i) truth.basis[disputed[i]] = Basis::unknown;
+  disputed.resize(std::min(disputed.size(), affordable));
+
+  const BatchAnswers before = truth.answers;
+  prove(scene, batch, disputed, truth);
+  count_bases(truth);
+  return static_cast<std::size_t>(std::count_if(disputed.begin(), disputed.end(), [&](std::size_t ray) {
+    return !equal_at(before, truth.answers, batch.query, ray);
+  }));
+}
+
 Truth establish_truth(const Scene& scene, const RayBatch& batch, std::span<const Row> rows,
                       const TruthSettings& settings) {
   const std::size_t rays = batch.rays.size();
@@ -193,32 +223,16 @@ Truth establish_truth(const Scene& scene, const RayBatch& batch, std::span<const
     truth.basis.assign(rays, Basis::proved);
   } else {
     // Where the exact rows agree, their answer is the candidate. The first of them stands for all.
-    std::vector<std::size_t> disputed;
     const auto first =
         std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.policy == Answers::exact; });
     if (first != rows.end()) {
       truth.answers = first->answers;
       truth.basis.assign(rays, Basis::agreed);
-      for (std::size_t ray = 0; ray < rays; ++ray) {
-        const bool doubted = std::any_of(rows.begin(), rows.end(), [&](const Row& row) {
-          return row.policy == Answers::exact ? !equal_at(truth.answers, row.answers, batch.query, ray)
-                                              : contradicts(scene, batch, truth.answers, row.answers, ray);
-        });
-        if (doubted) disputed.push_back(ray);
-      }
     }
     prove(scene, batch, sample_indices(rays, settings.sample, settings.seed), truth);
-    // What is disputed beyond the budget stays open: nobody's answer is taken for true there.
-    const auto affordable = static_cast<std::size_t>(settings.test_budget / cost);
-    for (std::size_t i = affordable; i < disputed.size(); ++i)
-      if (truth.basis[disputed[i]] != Basis::proved) truth.basis[disputed[i]] = Basis::unknown;
-    disputed.resize(std::min(disputed.size(), affordable));
-    prove(scene, batch, disputed, truth);
+    for (const Row& row : rows) settle_disputes(scene, batch, row, truth, settings);
   }
-  truth.brute_forced =
-      static_cast<std::size_t>(std::count(truth.basis.begin(), truth.basis.end(), Basis::proved));
-  truth.known =
-      rays - static_cast<std::size_t>(std::count(truth.basis.begin(), truth.basis.end(), Basis::unknown));
+  count_bases(truth);
   return truth;
 }
 

@@ -53,4 +53,10 @@ struct TruthSettings {
 Truth establish_truth(const Scene& scene, const RayBatch& batch, std::span<const Row> rows,
                       const TruthSettings& settings = {});
 
+/// Takes one more row into account: every ray on which it contradicts a truth that is only `agreed` is
+/// brute-forced. Returns on how many of them the truth turned out to be another than was believed (the rows
+/// that agreed on it were all wrong).
+std::size_t settle_disputes(const Scene& scene, const RayBatch& batch, const Row& row, Truth& truth,
+                            const TruthSettings& settings = {});
+
 }  // namespace raymeter

@@ -1,0 +1,323 @@
+#include "harness/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <memory>
+#include <optional>
+
+#include "harness/environment.h"
+#include "harness/grading.h"
+#include "harness/ray_kinds.h"
+#include "harness/truth.h"
+#include "scenes/base/error.h"
+#include "scenes/base/hash.h"
+
+namespace raymeter {
+namespace {
+
+/// What the compiler was told to compile our own structures for.
+const char* build_isa() {
+#if defined(__AVX512F__)
+  return "avx512";
+#elif defined(__AVX2__)
+  return "avx2";
+#elif defined(__SSE4_2__)
+  return "sse4.2";
+#elif defined(__SSE2__)
+  return "sse2";
+#else
+  return "unknown";
+#endif
+}
+
+std::string hex(std::uint64_t hash) {
+  return fmt::format("{:016x}", hash);
+}
+
+/// A structure as built, or why it could not be.
+struct Built {
+  std::unique_ptr<Structure> structure;
+  StructureStats stats;
+  double seconds = 0;
+  std::string failure;
+};
+
+double process_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Build time is CPU time of the whole process at one thread (a builder may hand work to a thread of its
+/// own), wall time at more.
+Built build(const Registry& registry, const Spec& spec, const BuildInput& input) {
+  Built built;
+  const auto wall = std::chrono::steady_clock::now();
+  const double cpu = process_cpu_seconds();
+  try {
+    built.structure = registry.build(spec, input);
+  } catch (const std::exception& error) {
+    built.failure = error.what();
+    return built;
+  }
+  built.seconds = input.threads == 1
+                      ? process_cpu_seconds() - cpu
+                      : std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  built.stats = built.structure->stats();
+  return built;
+}
+
+/// A batch with what is known to be true of it.
+struct JudgedBatch {
+  RayBatch rays;
+  Truth truth;
+};
+
+/// The exact structure whose answers the truth starts from, and whose primary hits the secondary rays start
+/// from: the quickest one that can be built here. Its answers are proved on a sample of every batch.
+std::unique_ptr<Structure> build_reference(const Registry& registry, const BuildInput& input) {
+  std::string failures;
+  for (const char* name : {"counted-bvh", "grid", "brute-force"}) {
+    Built built = build(registry, Spec{name, {}}, input);
+    if (built.structure) return std::move(built.structure);
+    failures += fmt::format("; {}: {}", name, built.failure);
+  }
+  throw Error(fmt::format("{}: no structure could be built to take reference hits from{}", input.scene.name(),
+                          failures));
+}
+
+Truth reference_truth(const Scene& scene, Structure& reference, const RayBatch& batch, unsigned threads,
+                      ComparisonObserver& observer) {
+  reference.prepare(batch.view());
+  BatchAnswers answers;
+  trace(reference, batch.view(), answers, threads);
+  const Row row{answers, Answers::exact};
+  Truth truth = establish_truth(scene, batch, {&row, 1}, {.seed = batch.hash});
+  std::size_t refuted = 0;
+  for (std::size_t i = 0; i < batch.rays.size(); ++i)
+    refuted += batch.query == QueryKind::closest ? truth.answers.hits[i] != answers.hits[i]
+                                                 : truth.answers.occluded[i] != answers.occluded[i];
+  if (refuted) observer.reference_refuted(batch.name, refuted);
+  return truth;
+}
+
+std::vector<JudgedBatch> make_batches(const Scene& scene, const Registry& registry,
+                                      const ComparisonSettings& settings, std::span<const Arguments> kinds,
+                                      ComparisonObserver& observer) {
+  const auto reference = build_reference(registry, {scene, settings.race.threads});
+  const unsigned threads = settings.race.threads;
+  JudgedBatch primary{make_primary(scene, settings.batches), {}};
+  primary.truth = reference_truth(scene, *reference, primary.rays, threads, observer);
+  std::vector<JudgedBatch> batches;
+  for (const Arguments& kind : kinds) {
+    if (kind.name() == "primary") {
+      batches.push_back(primary);
+      continue;
+    }
+    JudgedBatch batch{make_batch(scene, kind, settings.batches, primary.rays, primary.truth.answers.hits),
+                      {}};
+    batch.truth = reference_truth(scene, *reference, batch.rays, threads, observer);
+    batches.push_back(std::move(batch));
+  }
+  return batches;
+}
+
+/// What is the same in all rows of a comparison.
+struct Context {
+  const Scene& scene;
+  const ComparisonSettings& settings;
+  std::string baseline;  ///< canonical
+  std::string build;     ///< id
+};
+
+std::string key_of(const Context& context, const RayBatch& batch, const Arguments& arguments) {
+  const RaceSettings& race = context.settings.race;
+  Hasher hasher;
+  hasher.value(context.scene.hash());
+  hasher.text(context.scene.name());
+  hasher.value(batch.hash);
+  for (const std::string& text : {batch.name, arguments.canonical(), context.baseline, context.build})
+    hasher.text(text);
+  hasher.value(race.rounds);
+  hasher.value(race.threads);
+  hasher.value(race.min_round_seconds);
+  hasher.value(race.time_budget);
+  hasher.value(context.settings.memory_limit);
+  hasher.value(context.settings.batches.seed);
+  return hex(hasher.digest());
+}
+
+/// The part of a record that is known before anything was built.
+Record blank_record(const Context& context, const JudgedBatch& batch, const Arguments& arguments) {
+  constexpr std::string_view order_names[] = {"tiled", "scanline", "shuffled"};
+  Record r;
+  r.key = key_of(context, batch.rays, arguments);
+  r.scene = context.scene.name();
+  r.scene_hash = hex(context.scene.hash());
+  r.primitives = context.scene.primitive_count();
+  r.structure = arguments.name();
+  r.spec = arguments.canonical();
+  r.baseline = context.baseline;
+  r.batch = batch.rays.name;
+  r.query = batch.rays.query == QueryKind::any ? "any" : "closest";
+  r.order = order_names[static_cast<std::size_t>(batch.rays.order)];
+  r.rays = batch.rays.rays.size();
+  r.ray_hash = hex(batch.rays.hash);
+  r.threads = context.settings.race.threads;
+  r.seed = context.settings.batches.seed;
+  r.build_id = context.build;
+  return r;
+}
+
+void add_build(Record& r, const Built& built) {
+  const StructureStats& stats = built.stats;
+  const auto present = [](std::uint64_t count) { return count ? Record::Count(count) : Record::Count(); };
+  r.build_s = built.seconds;
+  r.bytes = stats.bytes;
+  r.peak_bytes = stats.peak_bytes;
+  r.nx = present(stats.resolution[0]);
+  r.ny = present(stats.resolution[1]);
+  r.nz = present(stats.resolution[2]);
+  r.cells = present(stats.cells);
+  if (r.cells) {
+    r.empty_cells = stats.empty_cells;
+    r.references = stats.references;
+    r.inner_nodes = stats.inner_nodes;
+    r.depth = stats.depth;
+  }
+  r.isa = stats.isa.empty() ? build_isa() : stats.isa;
+  r.note = stats.note;
+}
+
+void add_counters(Record& r, const CounterTotals& totals) {
+  if (totals.rays == 0) return;
+  r.steps_per_ray = totals.per_ray(totals.steps);
+  r.cell_steps_per_ray = totals.per_ray(totals.cell_steps);
+  r.empty_cell_steps_per_ray = totals.per_ray(totals.empty_cell_steps);
+  r.tests_per_ray = totals.per_ray(totals.tests);
+  r.test_blocks_per_ray = totals.per_ray(totals.test_blocks);
+  r.distinct_tests_per_ray = totals.per_ray(totals.distinct_tests);
+  r.decides_per_ray = totals.per_ray(totals.decides);
+  r.point_locations_per_ray = totals.per_ray(totals.point_locations);
+  r.subgrids_entered_per_ray = totals.per_ray(totals.subgrids_entered);
+  r.steps_p50 = totals.steps_histogram.percentile(0.5);
+  r.steps_p99 = totals.steps_histogram.percentile(0.99);
+  r.steps_max = totals.steps_histogram.maximum();
+  r.tests_p50 = totals.tests_histogram.percentile(0.5);
+  r.tests_p99 = totals.tests_histogram.percentile(0.99);
+  r.tests_max = totals.tests_histogram.maximum();
+}
+
+void add_race(Record& r, const RaceResult& result) {
+  r.rounds = result.rounds();
+  if (result.rounds() == 0) return;  // no rays: nothing to time
+  r.mrays_per_s = result.structure.median_rays_per_second / 1e6;
+  r.baseline_mrays_per_s = result.baseline.median_rays_per_second / 1e6;
+  r.ratio = result.ratio;
+  r.ratio_low = result.ratio_interval.low;
+  r.ratio_high = result.ratio_interval.high;
+  r.spread = result.spread;
+  if (result.noisy) r.noisy = "yes";
+}
+
+void add_grades(Record& r, const Grades& grades) {
+  r.right = grades.right;
+  r.within_bound = grades.within_bound;
+  r.tie = grades.tie;
+  r.edge = grades.edge;
+  r.grazing = grades.grazing;
+  r.at_limit = grades.at_limit;
+  r.degenerate = grades.degenerate;
+  r.wrong = grades.wrong;
+  r.not_given = grades.not_given;
+  r.unexplained = grades.unexplained;
+}
+
+void add_note(Record& r, std::string_view text) {
+  r.note += fmt::format("{}{}", r.note.empty() ? "" : "; ", text);
+}
+
+/// Races, counts and grades one built structure on one batch. Without a baseline there is a throughput but no
+/// ratio.
+Record measure(const Context& context, Structure* baseline, const Built& built, Answers policy,
+               JudgedBatch& batch, Record r, ComparisonObserver& observer) {
+  const RayBatch& rays = batch.rays;
+  add_build(r, built);
+  const RaceResult result =
+      race(baseline ? *baseline : *built.structure, *built.structure, rays, context.settings.race);
+  const BatchAnswers& answers = result.structure.answers;
+  bool consistent = true;
+  add_race(r, result);
+  if (!baseline) r.baseline_mrays_per_s = r.ratio = r.ratio_low = r.ratio_high = {};
+  r.hits = count_hits(answers);
+  r.hit_hash = hex(hit_hash(answers));
+  if (built.structure->counts()) {
+    BatchAnswers counted;
+    add_counters(r, count(*built.structure, rays.view(), counted, context.settings.race.threads));
+    if (counted != answers) consistent = false;
+  }
+  const Row row{answers, policy};
+  if (const std::size_t refuted = settle_disputes(context.scene, rays, row, batch.truth))
+    observer.reference_refuted(rays.name, refuted);
+  add_grades(r, grade(context.scene, rays, batch.truth, row));
+  r.reference_hash = hex(hit_hash(batch.truth.answers));
+  r.brute_forced = batch.truth.brute_forced;
+  r.status = consistent ? "ok" : "inconsistent";
+  if (!consistent) add_note(r, "the counted pass gave other answers than the timed one");
+  return r;
+}
+
+}  // namespace
+
+void compare_structures(const Scene& scene, const Registry& registry, const ComparisonSettings& settings,
+                        ComparisonObserver& observer) {
+  const Context context{scene, settings, registry.arguments(settings.baseline).canonical(), hex(build_id())};
+  std::vector<Spec> specs = settings.structures;
+  const auto is_baseline = [&](const Spec& spec) {
+    return registry.arguments(spec).canonical() == context.baseline;
+  };
+  if (std::ranges::none_of(specs, is_baseline)) specs.push_back(settings.baseline);
+  std::vector<Arguments> kinds;
+  for (const Spec& kind : settings.ray_kinds) kinds.push_back(ray_arguments(kind));
+
+  observer.progress(0, 1, fmt::format("{}: rays and their true hits", scene.name()));
+  std::vector<JudgedBatch> batches = make_batches(scene, registry, settings, kinds, observer);
+
+  const BuildInput input{scene, settings.race.threads, settings.memory_limit};
+  const std::size_t total = specs.size() * batches.size();
+  std::size_t done = 0;
+  std::optional<Built> baseline;  // built when first needed: a resumed run may need nothing at all
+  for (const Spec& spec : specs) {
+    const Arguments arguments = registry.arguments(spec);
+    const Answers policy = registry.find(spec.name).answers;
+    std::optional<Built> built;  // only the baseline and this one are alive during its races
+    for (JudgedBatch& batch : batches) {
+      Record blank = blank_record(context, batch, arguments);
+      observer.progress(done++, total,
+                        fmt::format("{} {} {}", scene.name(), arguments.brief(), batch.rays.name));
+      if (const Record* earlier = observer.finished(blank.key)) {
+        observer.record(*earlier);
+        continue;
+      }
+      if (!baseline) baseline = build(registry, settings.baseline, input);
+      if (!built) built = build(registry, spec, input);
+      if (built->structure) {
+        Record record =
+            measure(context, baseline->structure.get(), *built, policy, batch, std::move(blank), observer);
+        if (!baseline->structure) add_note(record, "no ratio, the baseline failed: " + baseline->failure);
+        observer.record(record);
+      } else {
+        blank.status = "failed";
+        blank.note = built->failure;
+        observer.record(blank);
+      }
+    }
+  }
+}
+
+}  // namespace raymeter

@@ -1,0 +1,199 @@
+#include "harness/comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "baselines/register_baselines.h"
+#include "boxed_groups.h"
+#include "scenes/base/error.h"
+#include "scenes/open_scene.h"
+
+namespace raymeter {
+namespace {
+
+Registry full_registry() {
+  Registry registry;
+  register_accel(registry);
+  register_baselines(registry);
+  register_boxed_groups(registry);
+  return registry;
+}
+
+ComparisonSettings quick_settings(const std::vector<std::string>& structures,
+                                  const std::vector<std::string>& kinds) {
+  ComparisonSettings settings;
+  for (const std::string& text : structures) settings.structures.push_back(parse_spec(text));
+  for (const std::string& text : kinds) settings.ray_kinds.push_back(parse_spec(text));
+  settings.baseline = parse_spec("embree");
+  settings.batches.size = {48, 36, false};
+  settings.race.rounds = 3;
+  settings.race.min_round_seconds = 0.001;
+  return settings;
+}
+
+class Collector : public ComparisonObserver {
+ public:
+  void record(const Record& record) override { records.push_back(record); }
+  void reference_refuted(std::string_view, std::size_t rays) override { refuted += rays; }
+  const Record* finished(std::string_view key) override {
+    const auto found = earlier.find(std::string(key));
+    return found == earlier.end() ? nullptr : &found->second;
+  }
+
+  std::vector<Record> records;
+  std::map<std::string, Record> earlier;
+  std::size_t refuted = 0;
+};
+
+/// Finds hits a little too far away, in some rays.
+class Liar : public PerRayStructure<Liar> {
+ public:
+  explicit Liar(const Scene& scene) : PerRayStructure(scene), truth_(scene, 64, 1 << 30) {}
+  template <class Probe>
+  Hit closest_hit(const Ray& ray, Probe& probe) const {
+    Hit hit = truth_.closest_hit(ray, probe);
+    if (hit.found() && hit.primitive % 4 == 0) hit.t = std::nextafter(hit.t, no_hit);
+    return hit;
+  }
+  template <class Probe>
+  bool any_hit(const Ray& ray, Probe& probe) const {
+    return truth_.any_hit(ray, probe);
+  }
+  StructureStats stats() const override { return {}; }
+
+ private:
+  BoxedGroups truth_;
+};
+
+TEST(Comparison, EveryExactStructureIsRightOnEveryKindOfRay) {
+  const Registry registry = full_registry();
+  Collector collector;
+  const Scene scene = open_scene("soup:triangles=3000:size=0.05");
+  compare_structures(
+      scene, registry,
+      quick_settings({"grid", "tunable-grid", "octree", "two-level-grid", "counted-bvh", "boxed-groups"},
+                     {"primary", "shadow", "reflection", "diffuse", "ao", "random"}),
+      collector);
+  EXPECT_EQ(collector.records.size(), 7u * 6u) << "six structures and the baseline, six kinds of rays";
+  EXPECT_EQ(collector.refuted, 0u);
+  std::set<std::string> keys;
+  for (const Record& record : collector.records) {
+    SCOPED_TRACE(record.spec + " " + record.batch);
+    EXPECT_TRUE(keys.insert(record.key).second);
+    EXPECT_EQ(record.status, "ok");
+    EXPECT_GT(record.hits, 0u);
+    EXPECT_GE(record.rounds, 3u);
+    if (record.structure != "embree") {
+      EXPECT_EQ(record.right, record.rays);
+    }
+    EXPECT_EQ(record.wrong, 0u);
+    EXPECT_EQ(record.unexplained, 0u);
+  }
+}
+
+TEST(Comparison, AnExactStructureThatIsOffByOneBitIsWrong) {
+  Registry registry = full_registry();
+  registry.add({.name = "liar", .build = [](const Arguments&, const BuildInput& input) {
+                  return std::make_unique<Liar>(input.scene);
+                }});
+  Collector collector;
+  const Scene scene = open_scene("soup:triangles=3000:size=0.05");
+  compare_structures(scene, registry, quick_settings({"liar", "grid"}, {"primary"}), collector);
+  ASSERT_EQ(collector.records.size(), 3u);
+  EXPECT_GT(collector.records[0].wrong, 10u);
+  EXPECT_EQ(*collector.records[0].right + *collector.records[0].wrong, collector.records[0].rays);
+  EXPECT_EQ(collector.records[1].wrong, 0u) << "a liar must not spoil the truth for others";
+  EXPECT_NE(collector.records[0].hit_hash, collector.records[1].hit_hash);
+}
+
+TEST(Comparison, AFailedBuildIsARecordAndTheOthersGoOn) {
+  Registry registry = full_registry();
+  registry.add(
+      {.name = "broken", .build = [](const Arguments&, const BuildInput&) -> std::unique_ptr<Structure> {
+         throw std::runtime_error("no luck today");
+       }});
+  Collector collector;
+  const Scene scene = open_scene("soup:triangles=100");
+  compare_structures(scene, registry, quick_settings({"broken", "grid"}, {"primary"}), collector);
+  ASSERT_EQ(collector.records.size(), 3u);
+  EXPECT_EQ(collector.records[0].status, "failed");
+  EXPECT_EQ(collector.records[0].note, "no luck today");
+  EXPECT_FALSE(collector.records[0].right.has_value());
+  EXPECT_EQ(collector.records[1].status, "ok");
+}
+
+TEST(Comparison, WithoutABaselineThereIsNoRatio) {
+  Registry registry = full_registry();
+  registry.add(
+      {.name = "broken", .build = [](const Arguments&, const BuildInput&) -> std::unique_ptr<Structure> {
+         throw std::runtime_error("no luck today");
+       }});
+  ComparisonSettings settings = quick_settings({"grid"}, {"primary"});
+  settings.baseline = parse_spec("broken");
+  Collector collector;
+  const Scene scene = open_scene("soup:triangles=100");
+  compare_structures(scene, registry, settings, collector);
+  ASSERT_EQ(collector.records.size(), 2u);
+  EXPECT_EQ(collector.records[0].status, "ok");
+  EXPECT_FALSE(collector.records[0].ratio.has_value());
+  EXPECT_TRUE(collector.records[0].mrays_per_s.has_value());
+  EXPECT_THAT(collector.records[0].note, testing::HasSubstr("no luck today"));
+}
+
+TEST(Comparison, FinishedRecordsAreNotMeasuredAgain) {
+  const Registry registry = full_registry();
+  const Scene scene = open_scene("soup:triangles=100");
+  const ComparisonSettings settings = quick_settings({"grid", "octree"}, {"primary", "random"});
+  Collector first, second;
+  compare_structures(scene, registry, settings, first);
+  for (const Record& record : first.records) second.earlier[record.key] = record;
+  second.earlier.begin()->second.note = "kept";
+  compare_structures(scene, registry, settings, second);
+  ASSERT_EQ(second.records.size(), first.records.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < first.records.size(); ++i) {
+    EXPECT_EQ(second.records[i].key, first.records[i].key);
+    EXPECT_EQ(second.records[i].mrays_per_s, first.records[i].mrays_per_s) << "measured again";
+    kept += second.records[i].note == "kept";
+  }
+  EXPECT_EQ(kept, 1u);
+}
+
+TEST(Comparison, EmptyScenesAndBatchesAreCompared) {
+  const Registry registry = full_registry();
+  SceneData nothing;
+  nothing.name = "nothing";
+  Collector collector;
+  compare_structures(
+      Scene(nothing), registry,
+      quick_settings({"grid", "tunable-grid", "octree", "two-level-grid", "counted-bvh", "brute-force"},
+                     {"primary", "shadow", "random"}),
+      collector);
+  EXPECT_EQ(collector.records.size(), 7u * 3u);
+  for (const Record& record : collector.records) {
+    SCOPED_TRACE(record.spec + " " + record.batch);
+    EXPECT_EQ(record.status, "ok") << record.note;
+    EXPECT_EQ(record.hits, 0u);
+    EXPECT_EQ(record.right, record.rays);
+  }
+}
+
+TEST(Comparison, TheReadmeShowsThisExample) {
+  const auto text = [](const char* file) {
+    std::ostringstream content;
+    content << std::ifstream(std::string(RAYMETER_TEST_DATA) + "/../../" + file).rdbuf();
+    return content.str();
+  };
+  const std::string example = text("tests/harness/boxed_groups.h");
+  ASSERT_FALSE(example.empty());
+  EXPECT_THAT(text("README.md"), testing::HasSubstr(example.substr(example.find("/// Primitives in groups"))))
+      << "copy tests/harness/boxed_groups.h into the README";
+}
+
+}  // namespace
+}  // namespace raymeter
