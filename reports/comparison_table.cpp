@@ -51,8 +51,7 @@ std::string grade(const Record& record) {
   if (record.status != "ok") return record.status;
   if (const auto bad = record.wrong.value_or(0) + record.unexplained.value_or(0))
     return fmt::format("{} WRONG", bad);
-  const std::uint64_t other = record.rays.value_or(0) - record.right.value_or(0);
-  return other ? fmt::format("{} differ", grouped(other)) : "right";
+  return record.right == record.rays ? "right" : "explained";
 }
 
 std::string brief_spec(const Record& record, const Registry& registry) {
@@ -110,9 +109,14 @@ std::string comparison_table(std::span<const Record> records, const Registry& re
   for (const Record& record : records)
     if (std::ranges::find(batches, record.batch) == batches.end()) batches.push_back(record.batch);
 
-  std::vector<std::string> remarks;
-  const auto remark = [&](const std::string& what) {
-    if (std::ranges::find(remarks, what) == remarks.end()) remarks.push_back(what);
+  // Under the table, a paragraph for each structure and kind of remark: what is said, and of which batches.
+  std::vector<std::pair<std::string, std::string>> remarks;
+  const auto remark = [&](const std::string& head, const std::string& what) {
+    const auto same = std::ranges::find(remarks, head, &std::pair<std::string, std::string>::first);
+    if (same == remarks.end())
+      remarks.emplace_back(head, what);
+    else if (same->second.find(what) == std::string::npos)
+      same->second += "; " + what;
   };
   for (const std::string& batch : batches) {
     bool titled = false;
@@ -128,17 +132,15 @@ std::string comparison_table(std::span<const Record> records, const Registry& re
       }
       text += row(record, label);
       if (record.status == "ok" && record.right != record.rays)
-        remark(fmt::format("{}, {}: {} of {} differ from the truth: {}", label, batch,
-                           grouped(record.rays.value_or(0) - record.right.value_or(0)),
-                           grouped(record.rays.value_or(0)), differences(record)));
-      if (!record.note.empty()) remark(fmt::format("{}: {}", label, record.note));
+        remark(label + " differs from the truth: ", fmt::format("{}: {}", batch, differences(record)));
+      if (!record.note.empty()) remark(label + ": ", record.note);
       if (!record.noisy.empty())
-        remark(fmt::format("~ {}, {}: noisy, the rounds spread by {:.0f}%", label, batch,
-                           100 * record.spread.value_or(0)));
+        remark("~ noisy, interquartile range of the rounds' ratios: ",
+               fmt::format("{} {} {:.0f}%", label, batch, 100 * record.spread.value_or(0)));
     }
   }
   if (!remarks.empty()) text += "\n";
-  for (const std::string& what : remarks) text += wrapped(what, 2);
+  for (const auto& [head, what] : remarks) text += wrapped(head + what, 2);
   return text;
 }
 

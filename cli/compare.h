@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "accel/registry.h"
+
+namespace raymeter {
+
+/// What `raymeter compare` was asked, as text; defaults as --help says.
+struct CompareOptions {
+  std::vector<std::string> scenes;
+  std::vector<std::string> structures;
+  std::vector<std::string> rays;
+  std::string baseline = "embree";
+  std::string out;
+  std::string size = "320x240";
+  std::string order = "tiled";
+  std::string pixels = "centres";
+  std::string camera;
+  unsigned rounds = 5;
+  double time_budget = 10;
+  unsigned threads = 1;
+  std::uint64_t seed = 1;
+  std::uint64_t memory_limit = 4'000'000'000;
+};
+
+/// Runs the comparison, prints tables to standard output. Returns the exit status: 0 when every exact
+/// structure was right, 1 when one was wrong or unexplained, 2 when a scene could not be opened. Throws Error
+/// on bad options.
+int run_compare(const CompareOptions& options, const Registry& registry);
+
+}  // namespace raymeter

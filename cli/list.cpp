@@ -1,0 +1,75 @@
+#include "cli/list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "harness/ray_kinds.h"
+#include "harness/record.h"
+#include "scenes/generators/generators.h"
+
+namespace raymeter {
+namespace {
+
+constexpr std::size_t page_width = 100;
+
+/// Prints text from column `indent` on, breaking it between words; the first line begins with `head`.
+void print_wrapped(std::string head, std::string_view text, std::size_t indent) {
+  std::string line = std::move(head);
+  line.resize(std::max(line.size(), indent), ' ');
+  bool has_word = false;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (has_word && line.size() + 1 + word.size() > page_width) {
+      fmt::print("{}\n", line);
+      line.assign(indent, ' ');
+      has_word = false;
+    }
+    line += has_word ? " " : "";
+    line += word;
+    has_word = true;
+  }
+  fmt::print("{}\n", line);
+}
+
+void print_parameters(std::span<const Parameter> parameters) {
+  for (const Parameter& p : parameters)
+    print_wrapped(fmt::format("    {:<12} ", p.name), fmt::format("{} ({})", p.meaning, describe(p)), 17);
+}
+
+}  // namespace
+
+void run_list(std::string_view what, const Registry& registry) {
+  if (what == "structures") {
+    fmt::print("A structure is named `name:parameter=value:...`; a comma list sweeps: grid:amount=0.5,1,2\n");
+    for (const StructureKind& kind : registry.kinds()) {
+      fmt::print("\n");
+      print_wrapped(kind.name + ": ", kind.summary, 0);
+      print_wrapped("    from ", kind.source, 9);
+      print_parameters(kind.parameters);
+    }
+  } else if (what == "scenes") {
+    fmt::print("A scene is a file (.nff .obj .ply .stl .gltf .glb) or one of these, by name:\n");
+    for (const SceneGenerator& generator : scene_generators()) {
+      fmt::print("\n");
+      print_wrapped(generator.name + ": ", generator.summary, 0);
+      print_parameters(generator.parameters);
+    }
+  } else if (what == "rays") {
+    for (const RayKind& kind : ray_kinds()) {
+      fmt::print("{}: {} ({} hit)\n", kind.name, kind.summary,
+                 kind.query == QueryKind::any ? "any" : "closest");
+      print_parameters(kind.parameters);
+    }
+  } else {
+    fmt::print(
+        "The columns of records.csv and the keys of records.jsonl. What could not be had is an empty "
+        "field.\n\n");
+    for (const Column& column : columns())
+      print_wrapped(fmt::format("{:<26} {:<7} ", column.name, column.unit), column.meaning, 35);
+  }
+}
+
+}  // namespace raymeter

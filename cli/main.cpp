@@ -1,0 +1,127 @@
+// The `raymeter` command: arguments, and nothing that a user of the library would miss.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "accel/registry.h"
+#include "baselines/register_baselines.h"
+#include "cli/compare.h"
+#include "cli/list.h"
+#include "scenes/base/error.h"
+
+namespace {
+
+constexpr int bad_usage = 2;
+
+void add_compare(CLI::App& app, raymeter::CompareOptions& o) {
+  CLI::App* compare = app.add_subcommand(
+      "compare", "Run identical rays through several structures; check, count and time every one");
+  compare
+      ->add_option(
+          "scene", o.scenes,
+          "Scenes: files (.nff .obj .ply .stl .gltf .glb) or generated ones, as soup:triangles=60000")
+      ->required();
+  compare
+      ->add_option("-s,--structure", o.structures,
+                   "Structure, as grid:amount=0.5,1,2; may be given several times "
+                   "[grid tunable-grid octree two-level-grid embree counted-bvh]")
+      ->type_name("SPEC")
+      ->allow_extra_args(false);
+  compare
+      ->add_option("-r,--rays", o.rays,
+                   "Kind of rays: primary shadow reflection diffuse ao random; may be given several times "
+                   "[primary shadow reflection diffuse]")
+      ->type_name("KIND")
+      ->allow_extra_args(false);
+  compare->add_option("--baseline", o.baseline, "What ratios are taken against")
+      ->type_name("SPEC")
+      ->capture_default_str();
+  compare
+      ->add_option("--out", o.out,
+                   "Folder for records.jsonl, records.csv and environment.json; a run into a folder "
+                   "that holds a killed run's records goes on from there")
+      ->type_name("DIR");
+  compare->add_option("--size", o.size, "Picture, in pixels")->capture_default_str()->type_name("WxH");
+  compare->add_option("--order", o.order, "Order of the rays in a batch")
+      ->check(CLI::IsMember({"tiled", "scanline", "shuffled"}))
+      ->capture_default_str();
+  compare
+      ->add_option("--pixels", o.pixels,
+                   "Rays through pixel centres, or through the (W+1)x(H+1) corners as the SPD counts them")
+      ->check(CLI::IsMember({"centres", "corners"}))
+      ->capture_default_str();
+  compare
+      ->add_option("--camera", o.camera,
+                   "Camera, as from=0x-5x2:at=0x0x0:up=0x0x1:angle=45 (degrees, horizontal) [the scene's]")
+      ->type_name("CAMERA");
+  compare->add_option("--rounds", o.rounds, "Rounds of each race")
+      ->check(CLI::Range(3u, 1000u))
+      ->capture_default_str();
+  compare
+      ->add_option("--time-budget", o.time_budget,
+                   "Seconds at most for the rounds of one race (never under 3 rounds)")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  compare->add_option("--threads", o.threads, "Threads that build and trace")
+      ->check(CLI::Range(1u, 1024u))
+      ->capture_default_str();
+  compare->add_option("--seed", o.seed, "Seed of rays and samples")->capture_default_str();
+  compare
+      ->add_option("--memory-limit", o.memory_limit,
+                   "Bytes that a structure may use; 500MB and 2GB are understood")
+      ->transform(CLI::AsSizeValue(true))
+      ->type_name("BYTES")
+      ->capture_default_str();
+  compare->footer(
+      "Prints a table per scene. Exit status: 0 every exact structure was right; 1 one was wrong or "
+      "unexplained;\n"
+      "2 bad usage or input.\n\n"
+      "Examples:\n"
+      "  raymeter compare teapot.nff\n"
+      "  raymeter compare bunny.ply -s grid:amount=0.25,0.5,1,2 -r primary --out results\n"
+      "  raymeter compare soup:triangles=60000 -s tunable-grid:density=1,4,16 -s embree:query=1,16");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Raymeter compares ray-tracing acceleration structures: identical rays, proved hits, exact counts,\n"
+      "fair times, Embree as the baseline.");
+  app.set_version_flag("--version", RAYMETER_VERSION);
+  app.require_subcommand(1);
+  raymeter::CompareOptions compare;
+  add_compare(app, compare);
+  std::string what;
+  CLI::App* list = app.add_subcommand("list", "Show what can be named: scenes, structures, rays, columns");
+  list->add_option("what", what, "scenes, structures, rays or columns")
+      ->required()
+      ->check(CLI::IsMember({"scenes", "structures", "rays", "columns"}));
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    fmt::print(stderr, "raymeter: {} (see raymeter {}--help)\n", error.what(),
+               app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+    return bad_usage;
+  }
+
+  try {
+    raymeter::Registry registry;
+    raymeter::register_accel(registry);
+    raymeter::register_baselines(registry);
+    if (list->parsed()) {
+      raymeter::run_list(what, registry);
+      return 0;
+    }
+    return raymeter::run_compare(compare, registry);
+  } catch (const raymeter::Error& error) {
+    fmt::print(stderr, "raymeter: {}\n", error.what());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "raymeter: {}\n", error.what());
+  }
+  return bad_usage;
+}
