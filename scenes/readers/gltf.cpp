@@ -172,12 +172,13 @@ class GltfReader {
       version.fail(fmt::format("version {}; 2.0 can be read", in_quotes(version.text())));
     const auto required = root_.find("extensionsRequired");
     for (std::size_t i = 0; required && i < required->size(); ++i) {
-      const std::string& name = required->at(i).text();
+      const JsonPlace extension = required->at(i);
+      const std::string& name = extension.text();
       // Those that change how surfaces look but not where they are.
       bool harmless = name == "KHR_lights_punctual" || name == "KHR_animation_pointer";
       for (const char* family : {"KHR_materials_", "KHR_texture_", "EXT_texture_"})
         harmless |= name.starts_with(family);
-      if (!harmless) required->at(i).fail(fmt::format("the extension {} can't be read", in_quotes(name)));
+      if (!harmless) extension.fail(fmt::format("the extension {} can't be read", in_quotes(name)));
     }
   }
 
