@@ -19,7 +19,7 @@ struct CompareOptions {
   std::string pixels = "centres";
   std::string camera;
   unsigned rounds = 5;
-  double time_budget = 10;
+  double time_budget = 5;
   unsigned threads = 1;
   std::uint64_t seed = 1;
   std::uint64_t memory_limit = 4'000'000'000;

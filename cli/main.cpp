@@ -60,8 +60,9 @@ void add_compare(CLI::App& app, raymeter::CompareOptions& o) {
       ->check(CLI::Range(3u, 1000u))
       ->capture_default_str();
   compare
-      ->add_option("--time-budget", o.time_budget,
-                   "Seconds at most for the rounds of one race (never under 3 rounds)")
+      ->add_option(
+          "--time-budget", o.time_budget,
+          "Seconds for the rounds of one race: under 3 rounds only where one pass takes over a second")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   compare->add_option("--threads", o.threads, "Threads that build and trace")

@@ -9,6 +9,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "harness/environment.h"
 #include "harness/grading.h"
@@ -46,6 +47,11 @@ struct Built {
   double seconds = 0;
   std::string failure;
 };
+
+/// For what is not timed.
+unsigned all_cpus() {
+  return std::max(1u, std::thread::hardware_concurrency());
+}
 
 double process_cpu_seconds() {
   timespec now{};
@@ -91,11 +97,11 @@ std::unique_ptr<Structure> build_reference(const Registry& registry, const Build
                           failures));
 }
 
-Truth reference_truth(const Scene& scene, Structure& reference, const RayBatch& batch, unsigned threads,
+Truth reference_truth(const Scene& scene, Structure& reference, const RayBatch& batch,
                       ComparisonObserver& observer) {
   reference.prepare(batch.view());
   BatchAnswers answers;
-  trace(reference, batch.view(), answers, threads);
+  trace(reference, batch.view(), answers, all_cpus());
   const Row row{answers, Answers::exact};
   Truth truth = establish_truth(scene, batch, {&row, 1}, {.seed = batch.hash});
   std::size_t refuted = 0;
@@ -110,9 +116,8 @@ std::vector<JudgedBatch> make_batches(const Scene& scene, const Registry& regist
                                       const ComparisonSettings& settings, std::span<const Arguments> kinds,
                                       ComparisonObserver& observer) {
   const auto reference = build_reference(registry, {scene, settings.race.threads});
-  const unsigned threads = settings.race.threads;
   JudgedBatch primary{make_primary(scene, settings.batches), {}};
-  primary.truth = reference_truth(scene, *reference, primary.rays, threads, observer);
+  primary.truth = reference_truth(scene, *reference, primary.rays, observer);
   std::vector<JudgedBatch> batches;
   for (const Arguments& kind : kinds) {
     if (kind.name() == "primary") {
@@ -121,7 +126,7 @@ std::vector<JudgedBatch> make_batches(const Scene& scene, const Registry& regist
     }
     JudgedBatch batch{make_batch(scene, kind, settings.batches, primary.rays, primary.truth.answers.hits),
                       {}};
-    batch.truth = reference_truth(scene, *reference, batch.rays, threads, observer);
+    batch.truth = reference_truth(scene, *reference, batch.rays, observer);
     batches.push_back(std::move(batch));
   }
   return batches;
@@ -213,12 +218,21 @@ void add_counters(Record& r, const CounterTotals& totals) {
   r.tests_max = totals.tests_histogram.maximum();
 }
 
-void add_race(Record& r, const RaceResult& result) {
+void add_note(Record& r, std::string_view text) {
+  r.note += fmt::format("{}{}", r.note.empty() ? "" : "; ", text);
+}
+
+void add_race(Record& r, const RaceResult& result, unsigned wanted_rounds) {
   r.rounds = result.rounds();
   if (result.rounds() == 0) return;  // no rays: nothing to time
   r.mrays_per_s = result.structure.median_rays_per_second / 1e6;
   r.baseline_mrays_per_s = result.baseline.median_rays_per_second / 1e6;
   r.ratio = result.ratio;
+  if (result.rounds() < 3) {
+    add_note(r, fmt::format("{}: {} of {} rounds in the time budget, no interval", r.batch, result.rounds(),
+                            wanted_rounds));
+    return;
+  }
   r.ratio_low = result.ratio_interval.low;
   r.ratio_high = result.ratio_interval.high;
   r.spread = result.spread;
@@ -238,10 +252,6 @@ void add_grades(Record& r, const Grades& grades) {
   r.unexplained = grades.unexplained;
 }
 
-void add_note(Record& r, std::string_view text) {
-  r.note += fmt::format("{}{}", r.note.empty() ? "" : "; ", text);
-}
-
 /// Races, counts and grades one built structure on one batch. Without a baseline there is a throughput but no
 /// ratio.
 Record measure(const Context& context, Structure* baseline, const Built& built, Answers policy,
@@ -252,13 +262,13 @@ Record measure(const Context& context, Structure* baseline, const Built& built, 
       race(baseline ? *baseline : *built.structure, *built.structure, rays, context.settings.race);
   const BatchAnswers& answers = result.structure.answers;
   bool consistent = true;
-  add_race(r, result);
+  add_race(r, result, context.settings.race.rounds);
   if (!baseline) r.baseline_mrays_per_s = r.ratio = r.ratio_low = r.ratio_high = {};
   r.hits = count_hits(answers);
   r.hit_hash = hex(hit_hash(answers));
   if (built.structure->counts()) {
     BatchAnswers counted;
-    add_counters(r, count(*built.structure, rays.view(), counted, context.settings.race.threads));
+    add_counters(r, count(*built.structure, rays.view(), counted, all_cpus()));
     if (counted != answers) consistent = false;
   }
   const Row row{answers, policy};

@@ -10,6 +10,8 @@
 namespace raymeter {
 namespace {
 
+constexpr double slow_pass_seconds = 1;
+
 /// Holds the calling thread on the CPU it is running on, while it lives. Harmless where that is not allowed.
 class PinnedThread {
  public:
@@ -43,9 +45,10 @@ double run(const Structure& structure, const BatchView& batch, RaceSide& side, u
   return static_cast<double>(batch.rays.size()) * side.repetitions / std::max(seconds, 1e-9);
 }
 
-/// Traces until `min_seconds` have been measured, and chooses the repetitions so that a round lasts as long.
-void warm_up(const Structure& structure, const BatchView& batch, RaceSide& side,
-             const RaceSettings& settings) {
+/// Traces until `min_round_seconds` have been measured, and chooses the repetitions so that a round lasts as
+/// long. Returns the seconds of the fastest pass.
+double warm_up(const Structure& structure, const BatchView& batch, RaceSide& side,
+               const RaceSettings& settings) {
   constexpr unsigned most_passes = 10000;
   double total = 0, fastest = std::numeric_limits<double>::infinity();
   unsigned passes = 0;
@@ -56,6 +59,7 @@ void warm_up(const Structure& structure, const BatchView& batch, RaceSide& side,
   } while (total < settings.min_round_seconds && ++passes < most_passes);
   const double wanted = std::ceil(settings.min_round_seconds / std::max(fastest, 1e-9));
   side.repetitions = static_cast<unsigned>(std::clamp(wanted, 1.0, double{most_passes}));
+  return fastest;
 }
 
 }  // namespace
@@ -74,10 +78,22 @@ RaceResult race(Structure& baseline, Structure& structure, const RayBatch& batch
 
   const auto run_rounds = [&] {
     if (view.rays.empty()) return;
+    const auto keep_round = [&](double ours, double theirs) {
+      result.baseline.rays_per_second.push_back(theirs);
+      result.structure.rays_per_second.push_back(ours);
+      result.ratios.push_back(ours / theirs);
+    };
     warm_up(baseline, view, result.baseline, settings);
-    warm_up(structure, view, result.structure, settings);
-    for (unsigned round = 0; round < settings.rounds; ++round) {
-      if (round >= 3 && elapsed() >= settings.time_budget) break;
+    const double pass = warm_up(structure, view, result.structure, settings);
+    // A pass of seconds has long warmed itself up: it is not thrown away, it is the first round.
+    const bool slow = pass >= slow_pass_seconds;
+    if (slow)
+      keep_round(static_cast<double>(view.rays.size()) / pass,
+                 run(baseline, view, result.baseline, result.threads));
+    const unsigned least_rounds = slow ? 1 : 3;
+    while (result.rounds() < settings.rounds) {
+      const unsigned round = result.rounds();
+      if (round >= least_rounds && elapsed() + (slow ? pass : 0) >= settings.time_budget) break;
       double ours = 0, theirs = 0;
       for (const bool baseline_turn : {round % 2 == 0, round % 2 != 0}) {
         if (baseline_turn)
@@ -85,9 +101,7 @@ RaceResult race(Structure& baseline, Structure& structure, const RayBatch& batch
         else
           ours = run(structure, view, result.structure, result.threads);
       }
-      result.baseline.rays_per_second.push_back(theirs);
-      result.structure.rays_per_second.push_back(ours);
-      result.ratios.push_back(ours / theirs);
+      keep_round(ours, theirs);
     }
   };
   if (result.threads == 1) {

@@ -15,8 +15,9 @@ struct RaceSettings {
   unsigned threads = 1;
   /// A side whose pass is shorter repeats it until its part of a round lasts as long as this.
   double min_round_seconds = 0.02;
-  /// Wall-clock seconds after which no further round begins; three rounds are always run (or `rounds`, if
-  /// fewer).
+  /// Wall-clock seconds after which no further round begins. Three rounds are always run (or `rounds`, if
+  /// fewer); but of a structure that takes more than a second for one pass only as many as fit, and one at
+  /// least.
   double time_budget = std::numeric_limits<double>::infinity();
 };
 

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
+#include "accel/per_ray_structure.h"
 #include "tests/harness/test_scenes.h"
 
 namespace raymeter {
@@ -72,6 +76,41 @@ TEST(Race, StopsAtItsBudgetButNotBeforeThreeRounds) {
   EXPECT_EQ(race(*structure, *structure, batch, settings).rounds(), 3u);
   settings.rounds = 2;
   EXPECT_EQ(race(*structure, *structure, batch, settings).rounds(), 2u);
+}
+
+/// Takes more than a second for a pass. On several threads the clock is the wall's, so sleeping will do.
+class Sleeper final : public PerRayStructure<Sleeper> {
+ public:
+  explicit Sleeper(const Scene& scene) : PerRayStructure(scene) {}
+  template <class Probe>
+  Hit closest_hit(const Ray&, Probe&) const {
+    ++passes;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    return {};
+  }
+  template <class Probe>
+  bool any_hit(const Ray&, Probe&) const {
+    return false;
+  }
+  StructureStats stats() const override { return {}; }
+
+  mutable std::atomic<int> passes = 0;
+};
+
+TEST(Race, OfASlowStructureKeepsItsFirstPassAndRunsOnlyTheRoundsThatFit) {
+  const Scene scene = random_scene(5);
+  const auto baseline = build_brute_force(scene);
+  Sleeper slow(scene);
+  RaceSettings settings;
+  settings.rounds = 50;
+  settings.threads = 2;
+  settings.min_round_seconds = 0.001;
+  settings.time_budget = 1.5;
+  const RaceResult result = race(*baseline, slow, random_batch(1, QueryKind::closest), settings);
+  EXPECT_EQ(result.rounds(), 1u);
+  EXPECT_EQ(slow.passes, 1) << "a warm-up of seconds was thrown away";
+  EXPECT_GT(result.structure.median_rays_per_second, 0.5);
+  EXPECT_LT(result.structure.median_rays_per_second, 1.0);
 }
 
 TEST(Race, OfNoRaysHasNoRounds) {
