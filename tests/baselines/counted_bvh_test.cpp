@@ -8,6 +8,7 @@
 #include "accel/memory_meter.h"
 #include "scenes/base/error.h"
 #include "tests/baselines/test_rays.h"
+#include "tests/closed_sphere.h"
 
 namespace raymeter {
 namespace {
@@ -76,6 +77,11 @@ struct Counts {
   std::uint32_t steps, cell_steps, tests;
   friend bool operator==(const Counts&, const Counts&) = default;
 };
+
+TEST(CountedBvh, IsWatertight) {
+  for (const char* spec : {"counted-bvh", "counted-bvh:branching=2"})
+    expect_watertight_everywhere([&](const Scene& scene) { return build(spec, scene); });
+}
 
 TEST(CountedBvh, CountsAsByHand) {
   const Scene scene = two_triangles();

@@ -10,6 +10,7 @@
 #include "scenes/base/float_mode.h"
 #include "scenes/geometry/decide.h"
 #include "scenes/geometry/filter.h"
+#include "tests/closed_sphere.h"
 #include "tests/scenes/geometry/adversary.h"
 #include "tests/scenes/geometry/exact_reference.h"
 
@@ -140,49 +141,34 @@ TEST(DecideTriangle, DoesNotDependOnTheUnitOfLength) {
 
 // From inside a closed mesh of 39,600 triangles no ray escapes through a vertex or an edge.
 TEST(DecideTriangle, AClosedMeshIsWatertight) {
-  constexpr int stacks = 100, slices = 200;
-  std::vector<Vec3> vertices{{0, 0, 1}, {0, 0, -1}};
-  for (int i = 1; i < stacks; ++i)
-    for (int j = 0; j < slices; ++j) {
-      const double polar = 3.14159265358979 * i / stacks, around = 2 * 3.14159265358979 * j / slices;
-      vertices.push_back(to_float(
-          {std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar)}));
-    }
-  const auto index = [&](int i, int j) {
-    return i == 0 ? 0 : i == stacks ? 1 : 2 + (i - 1) * slices + j % slices;
-  };
-  std::vector<std::array<int, 3>> triangles;
-  for (int i = 0; i < stacks; ++i)
-    for (int j = 0; j < slices; ++j) {
-      const int a = index(i, j), b = index(i, j + 1), c = index(i + 1, j), d = index(i + 1, j + 1);
-      if (i > 0) triangles.push_back({a, b, d});
-      if (i < stacks - 1) triangles.push_back({a, d, c});
-    }
+  const ClosedSphere sphere;
+  const auto vertices = sphere.vertices();
+  const auto triangles = sphere.triangles();
   ASSERT_EQ(triangles.size(), 39600u);
 
   // Only the triangles at the vertex or edge aimed at can be hit: the rest are thousands of ulps away.
-  std::vector<std::vector<int>> at_vertex(vertices.size());
-  std::map<std::pair<int, int>, std::vector<int>> at_edge;
-  for (int i = 0; i < int(triangles.size()); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const int from = triangles[i][k], to = triangles[i][(k + 1) % 3];
+  std::vector<std::vector<std::uint32_t>> at_vertex(vertices.size());
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> at_edge;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = triangles[i][k], to = triangles[i][(k + 1) % 3];
       at_vertex[from].push_back(i);
       at_edge[std::minmax(from, to)].push_back(i);
     }
   int misses = 0;
-  const auto aim = [&](const Vec3& origin, const Vec3& target, const std::vector<int>& candidates) {
+  const auto aim = [&](const Vec3& origin, const Vec3& target, const std::vector<std::uint32_t>& candidates) {
     const Ray ray{origin, 0, target - origin};
-    misses += std::none_of(candidates.begin(), candidates.end(), [&](int i) {
+    misses += std::none_of(candidates.begin(), candidates.end(), [&](std::uint32_t i) {
       const auto& [a, b, c] = triangles[i];
       const Triangle triangle{vertices[a], vertices[b], vertices[c]};
       return may_hit(FilterRay(ray), triangle, no_hit) && decide(ray, triangle) != no_hit;
     });
   };
-  for (const Vec3& origin : {Vec3{0, 0, 0}, Vec3{0.1f, -0.2f, 0.3f}, Vec3{0.6f, 0.6f, -0.5f}}) {
+  for (const Vec3& origin : sphere.interior_points()) {
     for (std::size_t i = 0; i < vertices.size(); ++i) aim(origin, vertices[i], at_vertex[i]);
     for (const auto& [edge, candidates] : at_edge) {
       ASSERT_EQ(candidates.size(), 2u);
-      aim(origin, 0.5f * vertices[edge.first] + 0.5f * vertices[edge.second], candidates);
+      aim(origin, sphere.middle_of(edge), candidates);
     }
   }
   EXPECT_EQ(misses, 0);
