@@ -59,7 +59,7 @@ RayOrder parse_order(const std::string& text) {
   return text == "scanline" ? RayOrder::scanline : text == "shuffled" ? RayOrder::shuffled : RayOrder::tiled;
 }
 
-std::vector<Spec> parse_all(const std::vector<std::string>& texts, std::vector<std::string> defaults) {
+std::vector<Spec> parse_all(const std::vector<std::string>& texts, const std::vector<std::string>& defaults) {
   std::vector<Spec> specs;
   for (const std::string& text : texts.empty() ? defaults : texts)
     for (Spec& spec : parse_specs(text)) specs.push_back(std::move(spec));
