@@ -33,7 +33,7 @@ struct RaceResult {
   RaceSide baseline, structure;
   std::vector<double> ratios;  ///< by round: throughput of the structure over the baseline's
   double ratio = 0;            ///< their median
-  Interval ratio_interval;     ///< 95%, bootstrap
+  Interval ratio_interval;     ///< of that median; see median_interval_confidence(rounds())
   double spread = 0;           ///< interquartile range of the ratios over their median
   bool noisy = false;          ///< the spread exceeds `noisy_spread`
   bool pinned = false;         ///< the tracing thread was held on one CPU
