@@ -106,7 +106,7 @@ class Recorder : public ComparisonObserver {
   void record(const Record& record) override {
     if (log_ && !finished(record.key)) log_->append(record);
     const bool exact = registry_.find(record.structure).answers == Answers::exact;
-    if (record.status == "inconsistent") all_right_ = false;
+    if (record.status == "inconsistent" || (exact && record.status != "ok")) all_right_ = false;
     if (exact && record.wrong.value_or(0) + record.unexplained.value_or(0) + record.not_given.value_or(0) > 0)
       all_right_ = false;
     records_.push_back(record);

@@ -26,8 +26,8 @@ struct CompareOptions {
 };
 
 /// Runs the comparison, prints tables to standard output. Returns the exit status: 0 when every exact
-/// structure was right, 1 when one was wrong or unexplained, 2 when a scene could not be opened. Throws Error
-/// on bad options.
+/// structure was right, 1 when one was wrong, unexplained or not built, 2 when a scene could not be opened.
+/// Throws Error on bad options.
 int run_compare(const CompareOptions& options, const Registry& registry);
 
 }  // namespace raymeter

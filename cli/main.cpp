@@ -18,20 +18,22 @@ constexpr int bad_usage = 2;
 void add_compare(CLI::App& app, raymeter::CompareOptions& o) {
   CLI::App* compare = app.add_subcommand(
       "compare", "Run identical rays through several structures; check, count and time every one");
+  // A line break in a description goes on in the same column; lines stay below 100 columns.
   compare
-      ->add_option(
-          "scene", o.scenes,
-          "Scenes: files (.nff .obj .ply .stl .gltf .glb) or generated ones, as soup:triangles=60000")
-      ->required();
+      ->add_option("scene", o.scenes,
+                   "Files (.nff .obj .ply .stl .gltf .glb), or generated scenes,\n"
+                   "as soup:triangles=60000")
+      ->required()
+      ->type_name("SCENE");
   compare
       ->add_option("-s,--structure", o.structures,
-                   "Structure, as grid:amount=0.5,1,2; may be given several times "
+                   "Structure, as grid:amount=0.5,1,2; may be given several times\n"
                    "[grid tunable-grid octree two-level-grid embree counted-bvh]")
       ->type_name("SPEC")
       ->allow_extra_args(false);
   compare
       ->add_option("-r,--rays", o.rays,
-                   "Kind of rays: primary shadow reflection diffuse ao random; may be given several times "
+                   "Rays: primary shadow reflection diffuse ao random; several times\n"
                    "[primary shadow reflection diffuse]")
       ->type_name("KIND")
       ->allow_extra_args(false);
@@ -40,35 +42,42 @@ void add_compare(CLI::App& app, raymeter::CompareOptions& o) {
       ->capture_default_str();
   compare
       ->add_option("--out", o.out,
-                   "Folder for records.jsonl, records.csv and environment.json; a run into a folder "
-                   "that holds a killed run's records goes on from there")
+                   "Folder for records.jsonl, records.csv and environment.json; with\n"
+                   "the records of a killed run in it, the run goes on from there")
       ->type_name("DIR");
-  compare->add_option("--size", o.size, "Picture, in pixels")->capture_default_str()->type_name("WxH");
+  compare->add_option("--size", o.size, "Picture, in pixels")->type_name("WxH")->capture_default_str();
   compare->add_option("--order", o.order, "Order of the rays in a batch")
       ->check(CLI::IsMember({"tiled", "scanline", "shuffled"}))
       ->capture_default_str();
   compare
       ->add_option("--pixels", o.pixels,
-                   "Rays through pixel centres, or through the (W+1)x(H+1) corners as the SPD counts them")
+                   "Rays through pixel centres, or through the (W+1)x(H+1) corners\n"
+                   "as the SPD counts them")
       ->check(CLI::IsMember({"centres", "corners"}))
       ->capture_default_str();
   compare
       ->add_option("--camera", o.camera,
-                   "Camera, as from=0x-5x2:at=0x0x0:up=0x0x1:angle=45 (degrees, horizontal) [the scene's]")
+                   "As from=0x-5x2:at=0x0x0:up=0x0x1:angle=45 (degrees, horizontal)\n"
+                   "[the scene's]")
       ->type_name("CAMERA");
   compare->add_option("--rounds", o.rounds, "Rounds of each race")
       ->check(CLI::Range(3u, 1000u))
       ->capture_default_str();
   compare
-      ->add_option(
-          "--time-budget", o.time_budget,
-          "Seconds for the rounds of one race: under 3 rounds only where one pass takes over a second")
+      ->add_option("--time-budget", o.time_budget,
+                   "Seconds for the rounds of one race: under 3 rounds only where\n"
+                   "one pass takes over a second")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
-  compare->add_option("--threads", o.threads, "Threads that build and trace")
+  compare
+      ->add_option("--threads", o.threads,
+                   "Threads that trace, and that Embree builds with (our own\n"
+                   "structures are built by one)")
       ->check(CLI::Range(1u, 1024u))
       ->capture_default_str();
-  compare->add_option("--seed", o.seed, "Seed of rays and samples")->capture_default_str();
+  compare->add_option("--seed", o.seed, "Seed of rays and samples")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53u))
+      ->capture_default_str();
   compare
       ->add_option("--memory-limit", o.memory_limit,
                    "Bytes that a structure may use; 500MB and 2GB are understood")
@@ -76,9 +85,8 @@ void add_compare(CLI::App& app, raymeter::CompareOptions& o) {
       ->type_name("BYTES")
       ->capture_default_str();
   compare->footer(
-      "Prints a table per scene. Exit status: 0 every exact structure was right; 1 one was wrong or "
-      "unexplained;\n"
-      "2 bad usage or input.\n\n"
+      "Prints a table per scene. Exit status: 0 every exact structure was right; 1 one was wrong,\n"
+      "unexplained or could not be built; 2 bad usage or input.\n\n"
       "Examples:\n"
       "  raymeter compare teapot.nff\n"
       "  raymeter compare bunny.ply -s grid:amount=0.25,0.5,1,2 -r primary --out results\n"

@@ -78,6 +78,22 @@ Built build(const Registry& registry, const Spec& spec, const BuildInput& input)
   return built;
 }
 
+/// Builds up to five times, while all builds together take less than 0.2 s: the median says more of a build
+/// of milliseconds than one of them, and what is paid once in a process falls out of it.
+Built build_timed(const Registry& registry, const Spec& spec, const BuildInput& input) {
+  Built built;
+  std::vector<double> seconds;
+  double total = 0;
+  do {
+    built = {};  // never two of them at once
+    built = build(registry, spec, input);
+    seconds.push_back(built.seconds);
+    total += built.seconds;
+  } while (built.structure && seconds.size() < 5 && total < 0.2);
+  built.seconds = median(seconds);
+  return built;
+}
+
 /// A batch with what is known to be true of it.
 struct JudgedBatch {
   RayBatch rays;
@@ -102,8 +118,7 @@ Truth reference_truth(const Scene& scene, Structure& reference, const RayBatch& 
   reference.prepare(batch.view());
   BatchAnswers answers;
   trace(reference, batch.view(), answers, all_cpus());
-  const Row row{answers, Answers::exact};
-  Truth truth = establish_truth(scene, batch, {&row, 1}, {.seed = batch.hash});
+  Truth truth = establish_truth(scene, batch, answers, {.seed = batch.hash});
   std::size_t refuted = 0;
   for (std::size_t i = 0; i < batch.rays.size(); ++i)
     refuted += batch.query == QueryKind::closest ? truth.answers.hits[i] != answers.hits[i]
@@ -315,7 +330,7 @@ void compare_structures(const Scene& scene, const Registry& registry, const Comp
         continue;
       }
       if (!baseline) baseline = build(registry, settings.baseline, input);
-      if (!built) built = build(registry, spec, input);
+      if (!built) built = build_timed(registry, spec, input);
       if (built->structure) {
         Record record =
             measure(context, baseline->structure.get(), *built, policy, batch, std::move(blank), observer);

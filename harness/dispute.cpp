@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "scenes/geometry/decide.h"
+
 namespace raymeter {
 namespace {
 
@@ -198,6 +200,19 @@ bool within_2_ulp(float a, float b) {
   if (std::signbit(a) != std::signbit(b)) return a == b;
   const auto x = std::bit_cast<std::int32_t>(a), y = std::bit_cast<std::int32_t>(b);
   return std::abs(std::int64_t{x} - y) <= 2;
+}
+
+std::optional<Grade> explain_hit(const Scene& scene, const Ray& ray, const Hit& truth, const Hit& answer) {
+  if (!truth.found() || answer.primitive >= scene.primitive_count()) return std::nullopt;
+  const bool same = answer.primitive == truth.primitive;
+  float t = truth.t;
+  if (!same)
+    t = scene.is_triangle(answer.primitive) ? decide(ray, scene.triangle(answer.primitive))
+                                            : decide(ray, scene.quadric(answer.primitive));
+  if (t == no_hit || !within_2_ulp(t, truth.t)) return std::nullopt;
+  if (!(std::abs(double(answer.t) - double(t)) <= t_bound(scene, ray, answer.primitive, t)))
+    return std::nullopt;
+  return same ? Grade::within_bound : Grade::tie;
 }
 
 std::optional<Grade> explain_missed(const Scene& scene, const Ray& ray, std::uint32_t primitive, float t) {

@@ -27,6 +27,11 @@ double t_bound(const Scene& scene, const Ray& ray, std::uint32_t primitive, doub
 /// Whether b is a or one of the two floats on either side of it.
 bool within_2_ulp(float a, float b);
 
+/// What explains `answer` from the two hits alone, where something does: within_bound when the primitive is
+/// the same, tie when `decide` puts the other primitive within 2 ulp of the truth. Neither needs a look at
+/// the scene.
+std::optional<Grade> explain_hit(const Scene& scene, const Ray& ray, const Hit& truth, const Hit& answer);
+
 /// `primitive` is hit, says `decide`, but a kernel did not report it: edge, grazing, at_limit or degenerate,
 /// the first that holds; or nothing. `t` is decide's.
 std::optional<Grade> explain_missed(const Scene& scene, const Ray& ray, std::uint32_t primitive, float t);

@@ -126,20 +126,17 @@ Grades grade(const Scene& scene, const RayBatch& batch, const Truth& truth, cons
                                : row.answers.occluded[ray] == truth.answers.occluded[ray];
     const bool given = closest ? row.answers.hits[ray].primitive != not_answered
                                : row.answers.occluded[ray] != occlusion_not_answered;
-    if (truth.basis[ray] == Basis::unknown) {
-      ++grades.unexplained;
-    } else if (equal) {
+    if (equal) {
       ++grades.right;
     } else if (row.policy == Answers::exact) {
-      ++grades.wrong;
+      // Where brute force did not decide, the reference may be wrong as well as this row.
+      ++(truth.proved[ray] ? grades.wrong : grades.unexplained);
     } else if (!given) {
       ++grades.not_given;
-    } else if (closest && truth.answers.hits[ray].found() &&
-               row.answers.hits[ray].primitive == truth.answers.hits[ray].primitive &&
-               std::abs(double(row.answers.hits[ray].t) - double(truth.answers.hits[ray].t)) <=
-                   t_bound(scene, batch.rays[ray], row.answers.hits[ray].primitive,
-                           truth.answers.hits[ray].t)) {
-      ++grades.within_bound;
+    } else if (const auto plain = closest ? explain_hit(scene, batch.rays[ray], truth.answers.hits[ray],
+                                                        row.answers.hits[ray])
+                                          : std::nullopt) {
+      ++grades[*plain];
     } else {
       disputed.push_back(ray);
     }

@@ -20,7 +20,7 @@ enum class Grade : std::uint8_t {
   degenerate,   ///< a triangle thinner than rounding
   wrong,        ///< contradicts the truth, and nothing above explains it
   not_given,    ///< the structure did not answer
-  unexplained,  ///< not examined: the truth is unknown, or the budget had run out
+  unexplained,  ///< differs, and was not examined: the budget had run out
 };
 inline constexpr std::size_t grade_count = 10;
 std::string_view name_of(Grade grade);
@@ -37,9 +37,10 @@ struct Grades {
   bool faultless() const { return wrong == 0 && not_given == 0 && unexplained == 0; }
 };
 
-/// Grades every answer. An exact row is right or wrong (or not given, or of unknown truth). The differences
-/// of a within_bound row are explained primitive by primitive, from `decide` over the whole scene; those
-/// beyond `test_budget` ray-primitive tests are `unexplained`.
+/// Grades every answer. Where an exact row differs it is wrong, or unexplained if brute force was not asked
+/// (settle_disputes comes first). The differences of a within_bound row are explained from the two hits, or
+/// else primitive by primitive, from `decide` over the whole scene; those beyond `test_budget` ray-primitive
+/// tests are `unexplained`.
 Grades grade(const Scene& scene, const RayBatch& batch, const Truth& truth, const Row& row,
              double test_budget = 2.5e9);
 

@@ -81,19 +81,24 @@ void for_pairs(const Scene& scene, std::span<const Ray> rays, const Test& test) 
       if (test(ray.index, ray.filter, quadric)) break;
 }
 
+/// Ray-primitive tests that brute force takes for a ray.
+double cost_of_ray(const Scene& scene) {
+  return std::max<double>(1, static_cast<double>(scene.primitive_count()));
+}
+
 bool equal_at(const BatchAnswers& a, const BatchAnswers& b, QueryKind query, std::size_t ray) {
   return query == QueryKind::closest ? a.hits[ray] == b.hits[ray] : a.occluded[ray] == b.occluded[ray];
 }
 
-/// Whether a row that may differ in the last bits contradicts the candidate by more than those.
-bool contradicts(const Scene& scene, const RayBatch& batch, const BatchAnswers& candidate,
-                 const BatchAnswers& row, std::size_t ray) {
-  if (equal_at(candidate, row, batch.query, ray)) return false;
-  if (batch.query == QueryKind::any) return row.occluded[ray] != occlusion_not_answered;
-  const Hit &a = candidate.hits[ray], &b = row.hits[ray];
-  if (b.primitive == not_answered) return false;
-  if (!a.found() || a.primitive != b.primitive) return a.found() || b.found();
-  return !(std::abs(double(a.t) - double(b.t)) <= t_bound(scene, batch.rays[ray], a.primitive, a.t));
+/// Whether a row contradicts what is taken for true, by more than is to be expected of it.
+bool contradicts(const Scene& scene, const RayBatch& batch, const BatchAnswers& truth, const Row& row,
+                 std::size_t ray) {
+  if (equal_at(truth, row.answers, batch.query, ray)) return false;
+  if (row.policy == Answers::exact) return true;
+  if (batch.query == QueryKind::any) return row.answers.occluded[ray] != occlusion_not_answered;
+  const Hit& answer = row.answers.hits[ray];
+  if (!answer.found() && !truth.hits[ray].found()) return false;  // a miss, whatever its t
+  return answer.primitive != not_answered && !explain_hit(scene, batch.rays[ray], truth.hits[ray], answer);
 }
 
 /// `count` different indices below `size`, in ascending order (Floyd's method would do without the array; the
@@ -115,7 +120,7 @@ void prove(const Scene& scene, const RayBatch& batch, std::span<const std::size_
   std::vector<Ray> rays;
   std::vector<std::size_t> open;
   for (const std::size_t i : indices)
-    if (truth.basis[i] != Basis::proved) {
+    if (!truth.proved[i]) {
       open.push_back(i);
       rays.push_back(batch.rays[i]);
     }
@@ -125,16 +130,9 @@ void prove(const Scene& scene, const RayBatch& batch, std::span<const std::size_
       truth.answers.hits[open[i]] = proved.hits[i];
     else
       truth.answers.occluded[open[i]] = proved.occluded[i];
-    truth.basis[open[i]] = Basis::proved;
+    truth.proved[open[i]] = 1;
   }
-}
-
-void count_bases(Truth& truth) {
-  const auto of = [&](Basis basis) {
-    return static_cast<std::size_t>(std::count(truth.basis.begin(), truth.basis.end(), basis));
-  };
-  truth.brute_forced = of(Basis::proved);
-  truth.known = truth.basis.size() - of(Basis::unknown);
+  truth.brute_forced += open.size();
 }
 
 }  // namespace
@@ -184,56 +182,34 @@ std::vector<Hit> all_hits(const Scene& scene, const Ray& ray) {
   return hits;
 }
 
+Truth establish_truth(const Scene& scene, const RayBatch& batch, const BatchAnswers& reference,
+                      const TruthSettings& settings) {
+  const std::size_t rays = batch.rays.size();
+  Truth truth;
+  if (static_cast<double>(rays) * cost_of_ray(scene) <= settings.test_budget) {
+    truth.answers = brute_force(scene, batch.rays, batch.query);
+    truth.proved.assign(rays, 1);
+    truth.brute_forced = rays;
+  } else {
+    truth.answers = reference;
+    truth.proved.assign(rays, 0);
+    prove(scene, batch, sample_indices(rays, settings.sample, settings.seed), truth);
+  }
+  return truth;
+}
+
 std::size_t settle_disputes(const Scene& scene, const RayBatch& batch, const Row& row, Truth& truth,
                             const TruthSettings& settings) {
+  const auto affordable = static_cast<std::size_t>(settings.test_budget / cost_of_ray(scene));
   std::vector<std::size_t> disputed;
-  for (std::size_t ray = 0; ray < batch.rays.size(); ++ray)
-    if (truth.basis[ray] == Basis::agreed &&
-        (row.policy == Answers::exact ? !equal_at(truth.answers, row.answers, batch.query, ray)
-                                      : contradicts(scene, batch, truth.answers, row.answers, ray)))
-      disputed.push_back(ray);
-  // What is disputed beyond the budget stays open: nobody's answer is taken for true there.
-  const double cost = std::max<double>(1, static_cast<double>(scene.primitive_count()));
-  const auto affordable = static_cast<std::size_t>(settings.test_budget / cost);
-  for (std::size_t i = affordable; i < disputed.size(); ++i) truth.basis[disputed[i]] = Basis::unknown;
-  disputed.resize(std::min(disputed.size(), affordable));
+  for (std::size_t ray = 0; ray < batch.rays.size() && disputed.size() < affordable; ++ray)
+    if (!truth.proved[ray] && contradicts(scene, batch, truth.answers, row, ray)) disputed.push_back(ray);
 
   const BatchAnswers before = truth.answers;
   prove(scene, batch, disputed, truth);
-  count_bases(truth);
   return static_cast<std::size_t>(std::count_if(disputed.begin(), disputed.end(), [&](std::size_t ray) {
     return !equal_at(before, truth.answers, batch.query, ray);
   }));
-}
-
-Truth establish_truth(const Scene& scene, const RayBatch& batch, std::span<const Row> rows,
-                      const TruthSettings& settings) {
-  const std::size_t rays = batch.rays.size();
-  const double cost = std::max<double>(1, static_cast<double>(scene.primitive_count()));
-  Truth truth;
-  truth.basis.assign(rays, Basis::unknown);
-  if (batch.query == QueryKind::closest)
-    truth.answers.hits.resize(rays);
-  else
-    truth.answers.occluded.resize(rays);
-
-  if (static_cast<double>(rays) * cost <= settings.test_budget) {
-    // A small scene: every ray is proved.
-    truth.answers = brute_force(scene, batch.rays, batch.query);
-    truth.basis.assign(rays, Basis::proved);
-  } else {
-    // Where the exact rows agree, their answer is the candidate. The first of them stands for all.
-    const auto first =
-        std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.policy == Answers::exact; });
-    if (first != rows.end()) {
-      truth.answers = first->answers;
-      truth.basis.assign(rays, Basis::agreed);
-    }
-    prove(scene, batch, sample_indices(rays, settings.sample, settings.seed), truth);
-    for (const Row& row : rows) settle_disputes(scene, batch, row, truth, settings);
-  }
-  count_bases(truth);
-  return truth;
 }
 
 }  // namespace raymeter

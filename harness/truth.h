@@ -17,19 +17,12 @@ BatchAnswers brute_force(const Scene& scene, std::span<const Ray> rays, QueryKin
 /// The hit that `decide` gives for each primitive that the ray hits in its interval, in the order of hits.
 std::vector<Hit> all_hits(const Scene& scene, const Ray& ray);
 
-/// How well the truth about one ray is known.
-enum class Basis : std::uint8_t {
-  unknown,  ///< nobody exact answered it, or it was disputed when the budget had run out
-  agreed,   ///< all exact rows agree, and nobody gave reason to doubt
-  proved,   ///< by brute force
-};
-
 /// What is true of every ray of a batch.
 struct Truth {
   BatchAnswers answers;
-  std::vector<Basis> basis;      ///< of every ray; where it is `unknown`, `answers` says nothing
-  std::size_t brute_forced = 0;  ///< rays that are `proved`
-  std::size_t known = 0;         ///< rays that are not `unknown`
+  std::vector<std::uint8_t>
+      proved;  ///< by ray: 1 where brute force gave the answer, 0 where it is the reference's
+  std::size_t brute_forced = 0;  ///< how many are proved
 };
 
 /// One structure's answers to a batch, as grading sees them.
@@ -40,22 +33,21 @@ struct Row {
 
 struct TruthSettings {
   std::uint64_t seed = 1;     ///< of the sample
-  std::size_t sample = 4096;  ///< rays that are proved whatever the rows say
-  /// Up to this many ray-primitive tests the whole batch is proved; and the rays outside the sample that are
-  /// disputed are proved until they have cost this much.
+  std::size_t sample = 4096;  ///< rays that are proved whatever anybody says
+  /// Up to this many ray-primitive tests the whole batch is proved; and the rays that one row disputes are
+  /// proved until they have cost this much.
   double test_budget = 2.5e8;
 };
 
-/// The truth about a batch. Small scenes are brute-forced whole. Else the answer on which all exact rows
-/// agree is taken for true, except on the rays that brute force settles: a seeded sample; every ray on which
-/// two exact rows differ; and every ray on which another row contradicts them by more than the last bits of
-/// t. So a fault that all exact rows share is caught where it meets the sample or a foreign row.
-Truth establish_truth(const Scene& scene, const RayBatch& batch, std::span<const Row> rows,
+/// The truth about a batch. Small scenes are brute-forced whole. Else the answers of `reference`, an exact
+/// structure, are taken for true, except on a seeded sample of the rays, which is brute-forced.
+Truth establish_truth(const Scene& scene, const RayBatch& batch, const BatchAnswers& reference,
                       const TruthSettings& settings = {});
 
-/// Takes one more row into account: every ray on which it contradicts a truth that is only `agreed` is
-/// brute-forced. Returns on how many of them the truth turned out to be another than was believed (the rows
-/// that agreed on it were all wrong).
+/// Takes a row into account: rays on which it contradicts a truth that is not proved are brute-forced, as
+/// many as the budget allows; the others stay as they are, since a doubt is no disproof. Differences of a
+/// within_bound row in the last bits, and ties, are no contradictions. So a fault of the reference is caught
+/// where it meets the sample, or any other row. Returns on how many rays the reference was refuted.
 std::size_t settle_disputes(const Scene& scene, const RayBatch& batch, const Row& row, Truth& truth,
                             const TruthSettings& settings = {});
 

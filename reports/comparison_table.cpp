@@ -6,21 +6,21 @@
 #include <iterator>
 #include <vector>
 
+#include "harness/grading.h"
+#include "harness/ray_kinds.h"
+#include "harness/statistics.h"
+
 namespace raymeter {
 namespace {
 
-constexpr std::size_t label_width = 26;
+constexpr std::size_t label_width = 22;
 constexpr std::size_t page_width = 100;
 
-std::string shortened(const std::string& text, std::size_t width) {
-  return text.size() <= width ? text : text.substr(0, width - 2) + "..";
-}
-
-/// A number in a column of `width`, with as many decimals as keep about three digits; "-" when absent.
-std::string number(const Record::Number& value, int width) {
-  if (!value) return fmt::format("{:>{}}", "-", width);
-  const int decimals = *value >= 100 ? 0 : *value >= 10 ? 1 : *value >= 1 ? 2 : 3;
-  return fmt::format("{:>{}.{}f}", *value, width, decimals);
+/// A number to about three digits; "-" when absent.
+std::string number(const Record::Number& value) {
+  if (!value) return "-";
+  if (*value != 0 && *value < 0.01) return fmt::format("{:.1e}", *value);
+  return fmt::format("{:.{}f}", *value, *value >= 100 ? 0 : *value >= 10 ? 1 : *value >= 1 ? 2 : 3);
 }
 
 std::string grouped(std::uint64_t value) {
@@ -33,29 +33,26 @@ std::string grouped(std::uint64_t value) {
 /// "2 edge, 1 tie": the classes of grading other than `right` that are not empty.
 std::string differences(const Record& record) {
   std::string text;
-  for (const Column& column : columns()) {
-    const auto* member = std::get_if<Record::Count Record::*>(&column.member);
-    if (!member) continue;
-    const bool is_class = column.name == "within_bound" || column.name == "tie" || column.name == "edge" ||
-                          column.name == "grazing" || column.name == "at_limit" ||
-                          column.name == "degenerate" || column.name == "wrong" ||
-                          column.name == "not_given" || column.name == "unexplained";
-    const Record::Count& count = record.**member;
-    if (is_class && count.value_or(0) > 0)
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(*count), column.name);
+  for (std::size_t grade = 1; grade < grade_count; ++grade) {
+    const std::string_view name = name_of(static_cast<Grade>(grade));
+    const Column& column = *std::ranges::find(columns(), name, &Column::name);
+    const Record::Count& count = record.*std::get<Record::Count Record::*>(column.member);
+    if (count.value_or(0) > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(*count), name);
   }
   return text;
 }
 
 std::string grade(const Record& record) {
   if (record.status != "ok") return record.status;
-  if (const auto bad = record.wrong.value_or(0) + record.unexplained.value_or(0))
-    return fmt::format("{} WRONG", bad);
+  if (record.wrong.value_or(0)) return fmt::format("{} WRONG", *record.wrong);
+  if (record.unexplained.value_or(0)) return fmt::format("{} unexamined", *record.unexplained);
+  if (record.not_given.value_or(0)) return fmt::format("{} not given", *record.not_given);
   return record.right == record.rays ? "right" : "explained";
 }
 
-std::string brief_spec(const Record& record, const Registry& registry) {
-  return registry.arguments(parse_spec(record.spec)).brief();
+std::string brief_spec(const std::string& spec, const Registry& registry) {
+  return registry.arguments(parse_spec(spec)).brief();
 }
 
 /// Breaks words so that lines fit the page, the first one indented by `indent`, the others by 2 more.
@@ -78,17 +75,19 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   return result + line + "\n";
 }
 
+/// A label that does not fit its column has a line of its own above the numbers.
 std::string row(const Record& record, const std::string& label) {
-  std::string interval = "-";
-  if (record.ratio_low && record.ratio_high)
-    interval = fmt::format("{:.3f}..{:.3f}", *record.ratio_low, *record.ratio_high);
   auto milliseconds = record.build_s, megabytes = Record::Number{};
   if (milliseconds) *milliseconds *= 1e3;
   if (record.bytes) megabytes = static_cast<double>(*record.bytes) / 1e6;
-  return fmt::format("  {:<{}}{}{}{}{}{} {:>14}{}{}  {}\n", shortened(label, label_width), label_width,
-                     number(milliseconds, 8), number(megabytes, 7), number(record.mrays_per_s, 8),
-                     number(record.ratio, 7), record.noisy.empty() ? " " : "~", interval,
-                     number(record.steps_per_ray, 7), number(record.tests_per_ray, 7), grade(record));
+  const std::string interval =
+      record.ratio_low ? number(record.ratio_low) + ".." + number(record.ratio_high) : "-";
+  const bool fits = label.size() <= label_width;
+  return (fits ? "" : wrapped(label, 2)) +
+         fmt::format("  {:<{}}{:>8}{:>8}{:>8}{:>8}{} {:>14}{:>8}{:>8} {}\n", fits ? label : "", label_width,
+                     number(milliseconds), number(megabytes), number(record.mrays_per_s),
+                     number(record.ratio), record.noisy.empty() ? " " : "~", interval,
+                     number(record.steps_per_ray), number(record.tests_per_ray), grade(record));
 }
 
 }  // namespace
@@ -99,11 +98,13 @@ std::string comparison_table(std::span<const Record> records, const Registry& re
   std::string text = wrapped(fmt::format("{}  {} primitives, scene hash {}", first.scene,
                                          grouped(first.primitives.value_or(0)), first.scene_hash),
                              0);
-  text +=
-      wrapped(fmt::format("{} thread{}; Mray/s and ratio against {}: median of {} rounds, 95% interval",
-                          first.threads.value_or(1), first.threads.value_or(1) == 1 ? "" : "s",
-                          registry.arguments(parse_spec(first.baseline)).brief(), first.rounds.value_or(0)),
-              0);
+  std::uint64_t rounds = 0;
+  for (const Record& record : records) rounds = std::max(rounds, record.rounds.value_or(0));
+  text += wrapped(
+      fmt::format("{} thread{}; ratio against {}: median of {} rounds and its {:.3g}% interval",
+                  first.threads.value_or(1), first.threads.value_or(1) == 1 ? "" : "s",
+                  brief_spec(first.baseline, registry), rounds, 100 * median_interval_confidence(rounds)),
+      0);
 
   std::vector<std::string> batches;
   for (const Record& record : records)
@@ -118,16 +119,17 @@ std::string comparison_table(std::span<const Record> records, const Registry& re
     else if (same->second.find(what) == std::string::npos)
       same->second += "; " + what;
   };
-  for (const std::string& batch : batches) {
+  for (const std::string& canonical : batches) {
+    const std::string batch = ray_arguments(parse_spec(canonical)).brief();
     bool titled = false;
     for (const Record& record : records) {
-      if (record.batch != batch) continue;
-      const std::string label = brief_spec(record, registry);
+      if (record.batch != canonical) continue;
+      const std::string label = brief_spec(record.spec, registry);
       if (!titled) {
         text += fmt::format("\n{}: {} rays, {} order, {} hit\n", batch, grouped(record.rays.value_or(0)),
                             record.order, record.query);
-        text += fmt::format("  {:<{}}{:>8}{:>7}{:>8}{:>7}  {:>14}{:>7}{:>7}  {}\n", "structure", label_width,
-                            "build ms", "MB", "Mray/s", "ratio", "95% interval", "steps", "tests", "grade");
+        text += fmt::format("  {:<{}}{:>8}{:>8}{:>8}{:>8}  {:>14}{:>8}{:>8} {}\n", "structure", label_width,
+                            "build ms", "MB", "Mray/s", "ratio", "interval", "steps", "tests", "grade");
         titled = true;
       }
       text += row(record, label);

@@ -29,6 +29,8 @@ Reader reader_for(const std::filesystem::path& file) {
 }
 
 SceneData read_file(const std::filesystem::path& file) {
+  std::error_code is_folder;
+  if (std::filesystem::is_directory(file, is_folder)) throw Error(fmt::format("{}: a folder", file.string()));
   const Reader read = reader_for(file);
   if (!read)
     throw Error(

@@ -164,6 +164,15 @@ TEST_F(Compare, AMemoryLimitIsSaidInTheRowAndDoesNotStopTheRun) {
   EXPECT_EQ(rows[1].at("status"), "ok");
 }
 
+TEST_F(Compare, AnOwnStructureThatIsNotBuiltIsStatusOne) {
+  const Outcome outcome = run(small + " -s grid -s counted-bvh -r primary --memory-limit 1000" + out());
+  EXPECT_EQ(outcome.status, 1) << outcome.text;
+  const auto rows = read_csv(folder_ / "records.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].at("status"), "failed");
+  EXPECT_EQ(rows[0].at("right"), "");
+}
+
 TEST_F(Compare, SweepsAndBaselines) {
   const Outcome outcome = run(small + " -s grid:amount=0.5,1,2 -r primary --baseline counted-bvh" + out());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
@@ -187,6 +196,8 @@ TEST_F(Compare, BadUsageIsOneLineAndStatusTwo) {
       {"compare soup --size 0x5", "expected WIDTHxHEIGHT"},
       {"compare soup --camera from=1x2x3", "'at' is missing"},
       {"compare soup --rounds 2", "rounds"},
+      {"compare soup --seed -1", "seed"},
+      {"compare /tmp", "/tmp: a folder"},
       {"compare soup:triangles=0", "should be a whole number"},
       {"list nosuch", "nosuch"},
       {"compare soup --out /dev/null/x", "/dev/null/x"},
@@ -225,6 +236,7 @@ TEST(Help, Teaches) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.text, HasSubstr("Examples:"));
   EXPECT_THAT(outcome.text, HasSubstr("xit status"));
+  for (const std::string& line : lines_of(outcome.text)) EXPECT_LE(line.size(), 100u) << line;
 }
 
 }  // namespace

@@ -89,9 +89,10 @@ TEST(Grading, AMissIsAMissWhateverItsT) {
   TruthSettings settings;
   settings.test_budget = 0;
   settings.sample = 0;
-  const BatchAnswers proved = brute_force(scene, batch.rays, batch.query);
-  const std::vector<Row> rows = {{proved, Answers::exact}, {answers, Answers::within_bound}};
-  EXPECT_EQ(establish_truth(scene, batch, rows, settings).known, 1u);
+  Truth truth = establish_truth(scene, batch, brute_force(scene, batch.rays, batch.query), settings);
+  settings.test_budget = 1;
+  settle_disputes(scene, batch, {answers, Answers::within_bound}, truth, settings);
+  EXPECT_EQ(truth.brute_forced, 0u);
 }
 
 TEST(Grading, LastBitsOfTAreWithinBound) {

@@ -49,11 +49,11 @@ class LargeBatch : public ::testing::TestWithParam<QueryKind> {
     EXPECT_EQ(grades.total(), rays);
     return grades;
   }
-  /// The first ray that is, or is not, settled by brute force when nobody disagrees.
-  std::size_t first_ray(Basis basis) const {
-    const Truth plain = establish_truth(scene, batch, std::vector<Row>{{truth, Answers::exact}}, settings);
-    return static_cast<std::size_t>(std::find(plain.basis.begin(), plain.basis.end(), basis) -
-                                    plain.basis.begin());
+  /// The first ray that is, or is not, in the sample.
+  std::size_t first_ray(bool proved) const {
+    const Truth plain = establish_truth(scene, batch, truth, settings);
+    return static_cast<std::size_t>(std::find(plain.proved.begin(), plain.proved.end(), proved ? 1 : 0) -
+                                    plain.proved.begin());
   }
 
   Scene scene = random_scene(50);
@@ -62,26 +62,25 @@ class LargeBatch : public ::testing::TestWithParam<QueryKind> {
   TruthSettings settings;
 };
 
-TEST_P(LargeBatch, AgreementIsProvedOnTheSample) {
-  const std::vector<Row> rows = {{truth, Answers::exact}, {truth, Answers::exact}};
-  const Truth established = establish_truth(scene, batch, rows, settings);
+TEST_P(LargeBatch, TheReferenceIsProvedOnASeededSample) {
+  const Truth established = establish_truth(scene, batch, truth, settings);
   EXPECT_EQ(established.answers, truth);
   EXPECT_EQ(established.brute_forced, 100u);
-  EXPECT_EQ(established.known, rays);
-  EXPECT_EQ(std::count(established.basis.begin(), established.basis.end(), Basis::proved), 100);
+  EXPECT_EQ(std::count(established.proved.begin(), established.proved.end(), 1), 100);
   EXPECT_EQ(grade_exact(established, truth).right, rays);
-  EXPECT_EQ(establish_truth(scene, batch, rows, settings).basis, established.basis);
+  EXPECT_EQ(establish_truth(scene, batch, truth, settings).proved, established.proved);
   settings.seed = 2;
-  EXPECT_NE(establish_truth(scene, batch, rows, settings).basis, established.basis);
+  EXPECT_NE(establish_truth(scene, batch, truth, settings).proved, established.proved);
 }
 
 TEST_P(LargeBatch, OnlyTheLiarIsWrong) {
   BatchAnswers liar = truth;
   for (std::size_t ray = 0; ray < 500; ++ray) lie(liar, 3 * ray);
   for (const bool liar_first : {true, false}) {
-    const std::vector<Row> rows = {{liar_first ? liar : truth, Answers::exact},
-                                   {liar_first ? truth : liar, Answers::exact}};
-    const Truth established = establish_truth(scene, batch, rows, settings);
+    Truth established = establish_truth(scene, batch, liar_first ? liar : truth, settings);
+    const std::size_t refuted =
+        settle_disputes(scene, batch, {liar_first ? truth : liar, Answers::exact}, established, settings);
+    EXPECT_EQ(refuted > 0, liar_first);
     EXPECT_EQ(established.answers, truth);
     EXPECT_EQ(grade_exact(established, truth).right, rays);
     EXPECT_EQ(grade_exact(established, liar).wrong, 500u);
@@ -89,48 +88,38 @@ TEST_P(LargeBatch, OnlyTheLiarIsWrong) {
   }
 }
 
-TEST_P(LargeBatch, ASharedLieIsCaughtInTheSample) {
+TEST_P(LargeBatch, AFaultOfTheReferenceIsCaughtInTheSample) {
   BatchAnswers liar = truth;
-  lie(liar, first_ray(Basis::proved));
-  const std::vector<Row> rows = {{liar, Answers::exact}, {liar, Answers::exact}};
-  const Truth established = establish_truth(scene, batch, rows, settings);
+  lie(liar, first_ray(true));
+  const Truth established = establish_truth(scene, batch, liar, settings);
   EXPECT_EQ(established.answers, truth);
   EXPECT_EQ(grade_exact(established, liar).wrong, 1u);
 }
 
-TEST_P(LargeBatch, ASharedLieIsCaughtByAForeignRow) {
+TEST_P(LargeBatch, AFaultOfTheReferenceIsCaughtByAForeignRow) {
   BatchAnswers liar = truth;
-  lie(liar, first_ray(Basis::agreed));
-  const std::vector<Row> rows = {{liar, Answers::exact}, {truth, Answers::within_bound}};
-  const Truth established = establish_truth(scene, batch, rows, settings);
+  lie(liar, first_ray(false));
+  Truth established = establish_truth(scene, batch, liar, settings);
+  const Row foreign{truth, Answers::within_bound};
+  EXPECT_EQ(settle_disputes(scene, batch, foreign, established, settings), 1u);
   EXPECT_EQ(established.answers, truth);
   EXPECT_EQ(established.brute_forced, 101u);
   EXPECT_EQ(grade_exact(established, liar).wrong, 1u);
-  EXPECT_EQ(grade(scene, batch, established, rows[1]).right, rays);
+  EXPECT_EQ(grade(scene, batch, established, foreign).right, rays);
 }
 
-TEST_P(LargeBatch, DisputesBeyondTheBudgetStayOpen) {
+TEST_P(LargeBatch, ManyFalseDoubtsTakeNothingFromTheOthers) {
   BatchAnswers liar = truth;
   for (std::size_t ray = 0; ray < rays; ++ray) lie(liar, ray);
-  const std::vector<Row> rows = {{liar, Answers::exact}, {truth, Answers::exact}};
-  const Truth established = establish_truth(scene, batch, rows, settings);
-  EXPECT_LE(established.known, 1100u);
-  EXPECT_GE(established.known, 1000u);
-  for (const BatchAnswers* answers : {&liar, &truth}) {
-    const Grades grades = grade_exact(established, *answers);
-    EXPECT_EQ(grades.unexplained, rays - established.known);
-    EXPECT_EQ(answers == &liar ? grades.wrong : grades.right, established.known);
+  for (const Answers policy : {Answers::exact, Answers::within_bound}) {
+    Truth established = establish_truth(scene, batch, truth, settings);
+    EXPECT_EQ(settle_disputes(scene, batch, {liar, policy}, established, settings), 0u);
+    EXPECT_EQ(established.brute_forced, 1100u) << "the sample, and as many disputes as the budget allows";
+    EXPECT_EQ(grade_exact(established, truth).right, rays);
+    const Grades grades = grade_exact(established, liar);
+    EXPECT_EQ(grades.wrong, 1100u);
+    EXPECT_EQ(grades.unexplained, rays - 1100) << "not proved wrong";
   }
-}
-
-TEST_P(LargeBatch, WithoutExactRowsOnlyTheSampleIsKnown) {
-  const std::vector<Row> rows = {{truth, Answers::within_bound}};
-  const Truth established = establish_truth(scene, batch, rows, settings);
-  EXPECT_EQ(established.known, 100u);
-  EXPECT_EQ(established.brute_forced, 100u);
-  const Grades grades = grade(scene, batch, established, rows[0]);
-  EXPECT_EQ(grades.right, 100u);
-  EXPECT_EQ(grades.unexplained, rays - 100);
 }
 
 TEST_P(LargeBatch, SmallOnesAreProvedWhole) {
@@ -146,7 +135,7 @@ TEST(Truth, OfNothing) {
   for (const std::size_t rays : {0u, 10u}) {
     const RayBatch batch = random_batch(rays, QueryKind::closest);
     const Truth truth = establish_truth(scene, batch, {});
-    EXPECT_EQ(truth.known, rays);
+    EXPECT_EQ(truth.brute_forced, rays);
     EXPECT_EQ(count_hits(truth.answers), 0u);
   }
 }

@@ -42,6 +42,7 @@ Record row(const std::string& spec) {
 TEST(ComparisonTable, FitsAHundredColumnsWhateverTheNames) {
   Record wide = row("grid:amount=1.2345678901234567");
   wide.note = std::string(60, 'x') + " " + std::string(70, 'y') + " clamped from 99999x99999x99999 to 1x1x1";
+  wide.spec = "grid:amount=1.2345678901234567";
   wide.ratio = 123.456;
   wide.ratio_low = 100.123;
   wide.ratio_high = 130.123;
@@ -88,6 +89,32 @@ TEST(ComparisonTable, SaysWhatNumbersWouldHide) {
   EXPECT_THAT(text, HasSubstr("grid primary 25%"));
   EXPECT_THAT(text, HasSubstr("failed"));
   EXPECT_THAT(text, HasSubstr("needs 8.1 MB"));
+}
+
+TEST(ComparisonTable, NamesWhatIsNotRight) {
+  const auto graded = [](Record::Count Record::* member) {
+    Record record = row("grid:amount=1");
+    record.right = 76790;
+    record.*member = 10;
+    return comparison_table(std::vector{record}, registry());
+  };
+  EXPECT_THAT(graded(&Record::wrong), HasSubstr(" 10 WRONG\n"));
+  EXPECT_THAT(graded(&Record::unexplained), HasSubstr(" 10 unexamined\n"));
+  EXPECT_THAT(graded(&Record::not_given), HasSubstr(" 10 not given\n"));
+  EXPECT_THAT(graded(&Record::tie), HasSubstr(" explained\n"));
+}
+
+TEST(ComparisonTable, TellsSweptStructuresApart) {
+  const std::string text = comparison_table(
+      std::vector{row("grid:amount=1.23456789012345"), row("grid:amount=1.23456789012346")}, registry());
+  EXPECT_THAT(text, HasSubstr("grid:amount=1.23456789012345\n"));
+  EXPECT_THAT(text, HasSubstr("grid:amount=1.23456789012346\n"));
+}
+
+TEST(ComparisonTable, ShowsHowSmallARatioIs) {
+  Record slow = row("grid:amount=1");
+  slow.ratio = 0.00012;
+  EXPECT_THAT(comparison_table(std::vector{slow}, registry()), HasSubstr("1.2e-04"));
 }
 
 TEST(ComparisonTable, NoRecordsNoTable) {
