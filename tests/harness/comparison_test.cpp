@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -93,6 +94,29 @@ TEST(Comparison, EveryExactStructureIsRightOnEveryKindOfRay) {
     }
     EXPECT_EQ(record.wrong, 0u);
     EXPECT_EQ(record.unexplained, 0u);
+  }
+}
+
+TEST(Comparison, TheDefaultsDoOnTeapot12WhatTheirPapersDescribe) {
+  const std::string teapot = std::string(RAYMETER_SHARED_DATA) + "/scenes/spd/standard/teapot12.nff";
+  if (!std::filesystem::exists(teapot)) GTEST_SKIP() << teapot << " is absent";
+  const Registry registry = full_registry();
+  Collector collector;
+  const Scene scene = open_scene(teapot);
+  compare_structures(scene, registry,
+                     quick_settings({"octree", "two-level-grid", "grid"}, {"primary", "diffuse"}), collector);
+  for (const Record& record : collector.records) {
+    SCOPED_TRACE(record.spec + " " + record.batch);
+    if (record.structure == "octree") {
+      EXPECT_GT(record.point_locations_per_ray, 0);
+    }
+    if (record.structure == "two-level-grid") {
+      EXPECT_GT(record.subgrids_entered_per_ray, 0);
+    }
+    if (record.structure == "grid") {
+      EXPECT_EQ(record.point_locations_per_ray, 0);
+      EXPECT_EQ(record.subgrids_entered_per_ray, 0);
+    }
   }
 }
 
