@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <ostream>
 #include <string>
 
 #include "harness/camera_rays.h"
@@ -66,6 +67,7 @@ struct Expected {
   const char* file;
   std::uint32_t width;
   std::int64_t hits;
+  friend void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.file; }
 };
 
 class PrimaryHits : public testing::TestWithParam<Expected> {};
