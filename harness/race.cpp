@@ -37,29 +37,29 @@ class PinnedThread {
   bool pinned_ = false;
 };
 
+/// A clock may stand still over a handful of rays.
+constexpr double shortest_seconds = 1e-9;
+
 /// Traces the batch as often as its side's repetitions say; returns rays per second.
 double run(const Structure& structure, const BatchView& batch, RaceSide& side, unsigned threads) {
-  double seconds = 0;
-  for (unsigned i = 0; i < side.repetitions; ++i) seconds += trace(structure, batch, side.answers, threads);
-  // A clock may stand still over a handful of rays.
-  return static_cast<double>(batch.rays.size()) * side.repetitions / std::max(seconds, 1e-9);
+  const double seconds = trace(structure, batch, side.answers, threads, side.repetitions);
+  return static_cast<double>(batch.rays.size()) * side.repetitions / std::max(seconds, shortest_seconds);
 }
 
-/// Traces until `min_round_seconds` have been measured, and chooses the repetitions so that a round lasts as
-/// long. Returns the seconds of the fastest pass.
+/// Traces with twice the repetitions each time, until they last `min_round_seconds`, and chooses the
+/// repetitions so that a round lasts as long. Returns the seconds of a pass, by the last of these trials.
 double warm_up(const Structure& structure, const BatchView& batch, RaceSide& side,
                const RaceSettings& settings) {
-  constexpr unsigned most_passes = 10000;
-  double total = 0, fastest = std::numeric_limits<double>::infinity();
-  unsigned passes = 0;
-  do {
-    const double seconds = trace(structure, batch, side.answers, settings.threads);
-    total += seconds;
-    fastest = std::min(fastest, seconds);
-  } while (total < settings.min_round_seconds && ++passes < most_passes);
-  const double wanted = std::ceil(settings.min_round_seconds / std::max(fastest, 1e-9));
-  side.repetitions = static_cast<unsigned>(std::clamp(wanted, 1.0, double{most_passes}));
-  return fastest;
+  constexpr unsigned most_repetitions = 1u << 20u;
+  double seconds = trace(structure, batch, side.answers, settings.threads);
+  while (seconds < settings.min_round_seconds && side.repetitions < most_repetitions) {
+    side.repetitions *= 2;
+    seconds = trace(structure, batch, side.answers, settings.threads, side.repetitions);
+  }
+  const double pass = std::max(seconds, shortest_seconds) / side.repetitions;
+  const double wanted = std::ceil(settings.min_round_seconds / pass);
+  side.repetitions = static_cast<unsigned>(std::clamp(wanted, 1.0, double{most_repetitions}));
+  return pass;
 }
 
 }  // namespace

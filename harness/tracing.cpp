@@ -28,30 +28,38 @@ void make_room(BatchAnswers& answers, const BatchView& batch) {
   answers.occluded.resize(closest ? 0 : batch.rays.size());
 }
 
-/// Calls work(chunk, first, count) for every chunk of the batch, each once.
+/// Calls work(chunk, first, count) for every chunk of the batch, each once in each pass.
 template <class Work>
-void for_chunks(const BatchView& batch, unsigned threads, const Work& work) {
+void for_chunks(const BatchView& batch, unsigned threads, std::size_t chunk_size, unsigned passes,
+                const Work& work) {
   const std::size_t rays = batch.rays.size();
-  // Eight chunks a thread balance the load; below 256 rays a chunk costs more than it helps.
-  const std::size_t fine = std::max<std::size_t>(256, rays / (std::size_t{8} * threads));
-  const std::size_t size = threads > 1 ? std::min(chunk_rays, fine) : chunk_rays;
   const auto do_chunk = [&](std::size_t index) {
     const FlushDenormals mode;
-    const std::size_t first = index * size, count = std::min(size, rays - first);
+    const std::size_t first = index * chunk_size, count = std::min(chunk_size, rays - first);
     BatchView chunk = batch;
     chunk.rays = batch.rays.subspan(first, count);
     chunk.first = batch.first + first;
     work(chunk, first, count);
   };
-  const std::size_t chunks = (rays + size - 1) / size;
+  const std::size_t chunks = (rays + chunk_size - 1) / chunk_size;
   if (threads <= 1) {
-    for (std::size_t i = 0; i < chunks; ++i) do_chunk(i);
+    for (unsigned pass = 0; pass < passes; ++pass)
+      for (std::size_t i = 0; i < chunks; ++i) do_chunk(i);
     return;
   }
   // As many threads as asked for, even where there are fewer CPUs.
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, chunks, do_chunk, tbb::simple_partitioner()); });
+  arena.execute([&] {
+    for (unsigned pass = 0; pass < passes; ++pass)
+      tbb::parallel_for(std::size_t{0}, chunks, do_chunk, tbb::simple_partitioner());
+  });
+}
+
+/// Eight chunks a thread balance the load; below 256 rays a chunk costs more than it helps.
+std::size_t timed_chunk(std::size_t rays, unsigned threads) {
+  if (threads <= 1) return chunk_rays;
+  return std::clamp<std::size_t>(rays / (std::size_t{8} * threads), 256, chunk_rays);
 }
 
 }  // namespace
@@ -70,16 +78,18 @@ std::uint64_t count_hits(const BatchAnswers& answers) {
       std::count(answers.occluded.begin(), answers.occluded.end(), std::uint8_t{1}));
 }
 
-double trace(const Structure& structure, const BatchView& batch, BatchAnswers& answers, unsigned threads) {
+double trace(const Structure& structure, const BatchView& batch, BatchAnswers& answers, unsigned threads,
+             unsigned passes) {
   make_room(answers, batch);
   const clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
-  const double start = now(clock);
-  for_chunks(batch, threads, [&](const BatchView& chunk, std::size_t first, std::size_t rays) {
+  const auto trace_chunk = [&](const BatchView& chunk, std::size_t first, std::size_t rays) {
     if (batch.query == QueryKind::closest)
       structure.trace_closest(chunk, std::span(answers.hits).subspan(first, rays));
     else
       structure.trace_any(chunk, std::span(answers.occluded).subspan(first, rays));
-  });
+  };
+  const double start = now(clock);
+  for_chunks(batch, threads, timed_chunk(batch.rays.size(), threads), passes, trace_chunk);
   return now(clock) - start;
 }
 
@@ -92,7 +102,7 @@ CounterTotals count(const Structure& structure, const BatchView& batch, BatchAns
   make_room(answers, batch);
   CounterTotals totals;
   std::mutex totals_mutex;
-  for_chunks(batch, threads, [&](const BatchView& chunk, std::size_t first, std::size_t rays) {
+  const auto count_chunk = [&](const BatchView& chunk, std::size_t first, std::size_t rays) {
     std::vector<RayCounters> counters(rays);
     if (batch.query == QueryKind::closest)
       structure.count_closest(chunk, std::span(answers.hits).subspan(first, rays), counters);
@@ -101,7 +111,8 @@ CounterTotals count(const Structure& structure, const BatchView& batch, BatchAns
     // Sums of whole numbers: the order in which chunks arrive does not matter.
     const std::lock_guard lock(totals_mutex);
     totals.add(counters);
-  });
+  };
+  for_chunks(batch, threads, timed_chunk(batch.rays.size(), threads), 1, count_chunk);
   return totals;
 }
 

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ctime>
+#include <limits>
 #include <thread>
 
 #include "accel/per_ray_structure.h"
@@ -63,6 +65,36 @@ TEST(Race, RepeatsShortBatches) {
   expect_sound(result);
   EXPECT_GT(result.baseline.repetitions, 10u);
   EXPECT_GT(result.structure.repetitions, 10u);
+}
+
+/// Answers nothing at once: all that can be timed is what is round it.
+class Nothing final : public Structure {
+ public:
+  void trace_closest(const BatchView&, std::span<Hit>) const override {}
+  void trace_any(const BatchView&, std::span<std::uint8_t>) const override {}
+  void count_closest(const BatchView&, std::span<Hit>, std::span<RayCounters>) const override {}
+  void count_any(const BatchView&, std::span<std::uint8_t>, std::span<RayCounters>) const override {}
+  StructureStats stats() const override { return {}; }
+};
+
+// Reading the thread's clock takes 200 ns or more, a pass of nothing far less.
+TEST(Race, OfATinyBatchTimesTheRaysAndNotTheClock) {
+  double clock_seconds = std::numeric_limits<double>::infinity();
+  for (int trial = 0; trial < 5; ++trial) {
+    timespec time{};
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 1000; ++i) clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    clock_seconds =
+        std::min(clock_seconds,
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 1000);
+  }
+  Nothing nothing;
+  RaceSettings settings;
+  settings.rounds = 3;
+  settings.min_round_seconds = 0.002;
+  const RaceResult result = race(nothing, nothing, random_batch(1, QueryKind::closest), settings);
+  EXPECT_LT(1 / result.structure.median_rays_per_second, clock_seconds);
+  EXPECT_GT(result.structure.repetitions, 1000u);
 }
 
 TEST(Race, StopsAtItsBudgetButNotBeforeThreeRounds) {

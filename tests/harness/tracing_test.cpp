@@ -62,6 +62,18 @@ TEST(Tracing, ChunksCoverTheBatchOnce) {
   }
 }
 
+TEST(Tracing, PassesAreTimedTogether) {
+  const RayBatch batch = random_batch(700, QueryKind::closest);
+  for (const unsigned threads : {1u, 3u}) {
+    const Recorder recorder;
+    BatchAnswers answers;
+    EXPECT_GT(trace(recorder, batch.view(), answers, threads, 50), 0);
+    EXPECT_EQ(recorder.rays_seen, 50 * batch.rays.size());
+    ASSERT_EQ(answers.hits.size(), batch.rays.size());
+    for (std::size_t i = 0; i < answers.hits.size(); ++i) ASSERT_EQ(answers.hits[i].primitive, i);
+  }
+}
+
 TEST(Tracing, AnyHitAnswersReplaceFormerOnes) {
   const RayBatch batch = random_batch(1000, QueryKind::any);
   const Recorder recorder;
