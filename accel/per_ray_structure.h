@@ -6,8 +6,8 @@ namespace raymeter {
 
 /// Makes the four batch functions from an author's two per-ray templates (see Structure). `Derived` has
 /// `closest_hit` and `any_hit`; they are compiled twice, with NoProbe for timing and with CountingProbe for
-/// counting, so that timed code carries no counter. The trace functions may be overridden, to trace rays of a
-/// batch together.
+/// counting, so that timed code carries no counter. All four may be overridden, to trace rays of a batch
+/// together: then the two that trace and the two that count must do the same work.
 template <class Derived>
 class PerRayStructure : public Structure {
  public:
@@ -22,7 +22,7 @@ class PerRayStructure : public Structure {
     for (std::size_t i = 0; i < batch.rays.size(); ++i) occluded[i] = self().any_hit(batch.rays[i], probe);
   }
   void count_closest(const BatchView& batch, std::span<Hit> hits,
-                     std::span<RayCounters> counters) const final {
+                     std::span<RayCounters> counters) const override {
     const FlushDenormals mode;
     CountingProbe probe(scene_.primitive_count());
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
@@ -31,7 +31,7 @@ class PerRayStructure : public Structure {
     }
   }
   void count_any(const BatchView& batch, std::span<std::uint8_t> occluded,
-                 std::span<RayCounters> counters) const final {
+                 std::span<RayCounters> counters) const override {
     const FlushDenormals mode;
     CountingProbe probe(scene_.primitive_count());
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {

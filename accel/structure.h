@@ -63,7 +63,8 @@ class Structure {
   /// occluded[i] is 1 where rays[i] hits anything in its interval, else 0.
   virtual void trace_any(const BatchView& batch, std::span<std::uint8_t> occluded) const = 0;
 
-  /// The same source with a counting probe: the same answers, and counters[i] of rays[i].
+  /// The same source with a counting probe: the same answers, and counters[i] of rays[i]. Chunks may be
+  /// larger than timed ones.
   /// A structure that can't count (`counts()` false) is never asked.
   virtual void count_closest(const BatchView& batch, std::span<Hit> hits,
                              std::span<RayCounters> counters) const = 0;

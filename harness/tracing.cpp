@@ -62,6 +62,13 @@ std::size_t timed_chunk(std::size_t rays, unsigned threads) {
   return std::clamp<std::size_t>(rays / (std::size_t{8} * threads), 256, chunk_rays);
 }
 
+/// One chunk a thread, since every chunk has a counting probe, which is as large as the scene; but no more
+/// rays than have their counters in 40 MB.
+std::size_t counted_chunk(std::size_t rays, unsigned threads) {
+  constexpr std::size_t most = std::size_t{1} << 20u;
+  return std::clamp<std::size_t>((rays + threads - 1) / std::max(1u, threads), 1, most);
+}
+
 }  // namespace
 
 std::uint64_t hit_hash(const BatchAnswers& answers) {
@@ -112,7 +119,7 @@ CounterTotals count(const Structure& structure, const BatchView& batch, BatchAns
     const std::lock_guard lock(totals_mutex);
     totals.add(counters);
   };
-  for_chunks(batch, threads, timed_chunk(batch.rays.size(), threads), 1, count_chunk);
+  for_chunks(batch, threads, counted_chunk(batch.rays.size(), threads), 1, count_chunk);
   return totals;
 }
 

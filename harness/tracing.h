@@ -24,7 +24,8 @@ std::uint64_t hit_hash(const BatchAnswers& answers);
 /// How many rays hit something.
 std::uint64_t count_hits(const BatchAnswers& answers);
 
-/// The most rays in one call of a structure. Batches on several threads are cut finer, so that all have work.
+/// The most rays in one timed call of a structure. Batches on several threads are cut finer, so that all have
+/// work.
 inline constexpr std::size_t chunk_rays = std::size_t{1} << 16u;
 
 /// Traces all rays of `batch` chunk by chunk with denormals flushed, on this thread (threads = 1) or on
@@ -38,7 +39,8 @@ double trace(const Structure& structure, const BatchView& batch, BatchAnswers& a
 /// "thread CPU time" or "wall-clock time": what `trace` measures on that many threads.
 const char* clock_name(unsigned threads);
 
-/// The counted pass: the same answers, with the counters of all rays together. The structure must count.
+/// The counted pass: the same answers, with the counters of all rays together. The structure must count. The
+/// rays are shared out evenly, one call of the structure for each thread, or for each 2^20 rays.
 CounterTotals count(const Structure& structure, const BatchView& batch, BatchAnswers& answers,
                     unsigned threads = 1);
 

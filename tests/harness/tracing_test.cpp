@@ -36,13 +36,14 @@ class Recorder final : public Structure {
   }
   StructureStats stats() const override { return {}; }
 
-  mutable std::size_t rays_seen = 0, largest_chunk = 0;
+  mutable std::size_t rays_seen = 0, largest_chunk = 0, calls = 0;
 
  private:
   void note(const BatchView& batch, std::size_t answers) const {
     const std::lock_guard lock(mutex_);
     EXPECT_EQ(batch.rays.size(), answers);
     rays_seen += answers;
+    ++calls;
     largest_chunk = std::max(largest_chunk, answers);
   }
   mutable std::mutex mutex_;
@@ -105,6 +106,21 @@ TEST(Tracing, CountsAddUpOnAnyNumberOfThreads) {
     EXPECT_LE(totals.tests, 3000u * 40);
     EXPECT_EQ(totals.tests_histogram.percentile(1), 40u);
   }
+}
+
+// A counting probe is as large as the scene.
+TEST(Tracing, CountingMakesOneProbeForEachThread) {
+  for (const QueryKind query : {QueryKind::closest, QueryKind::any})
+    for (const std::size_t rays : {std::size_t{0}, std::size_t{2}, std::size_t{10000}, chunk_rays * 2 + 77}) {
+      const RayBatch batch = random_batch(rays, query);
+      for (const unsigned threads : {1u, 3u}) {
+        const Recorder recorder;
+        BatchAnswers answers;
+        EXPECT_EQ(count(recorder, batch.view(), answers, threads).rays, rays);
+        EXPECT_EQ(recorder.rays_seen, rays);
+        EXPECT_EQ(recorder.calls, std::min<std::size_t>(rays, threads));
+      }
+    }
 }
 
 TEST(Tracing, HitHashSeesEveryBit) {
