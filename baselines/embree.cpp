@@ -424,28 +424,15 @@ std::unique_ptr<Structure> build(const Arguments& arguments, const BuildInput& i
   return std::make_unique<EmbreeStructure<1, true>>(arguments, input);
 }
 
-/// The first build of a process also starts Embree and its threads, 1 ms. No structure's build time shall
-/// contain that, so a scene of one triangle is built beforehand.
-void start_embree(const StructureKind& kind) {
-  SceneData data;
-  data.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  data.triangles = {{0, 1, 2}};
-  const Scene scene(std::move(data));
-  const FlushDenormals mode;
-  kind.build(Arguments({kind.name, {}}, kind.parameters), {scene});
-}
-
 }  // namespace
 
 StructureKind embree_kind() {
-  StructureKind kind{"embree",
-                     "Embree's own BVH and traversal: the baseline",
-                     "Wald, Woop, Benthin, Johnson, Ernst 2014",
-                     Answers::within_bound,
-                     parameters(),
-                     build};
-  start_embree(kind);
-  return kind;
+  return {"embree",
+          "Embree's own BVH and traversal: the baseline",
+          "Wald, Woop, Benthin, Johnson, Ernst 2014",
+          Answers::within_bound,
+          parameters(),
+          build};
 }
 
 }  // namespace raymeter

@@ -18,8 +18,8 @@ namespace raymeter {
 /// t <= 0 or have coordinates beyond `embree_largest_coordinate` as `not_answered` (scenes/geometry/ray.h).
 ///
 /// stats().bytes is what Embree allocates for its BVH; the Scene's buffers are no part of it. A build
-/// includes making the device, 0.1 ms. Starting Embree, once in a process, is no part of any build: this
-/// function does it.
+/// includes making the device, 0.1 ms, and the first one in a process also starts Embree, 1 ms (or the first
+/// build of counted-bvh does, with which a comparison begins).
 StructureKind embree_kind();
 
 }  // namespace raymeter
