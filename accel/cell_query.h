@@ -1,12 +1,18 @@
 #pragma once
 // What a ray asks of the cells that it pierces, the same for every grid: test the primitives of a cell, and
 // say how far the walk must go on.
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include "accel/mailbox.h"
 #include "accel/primitive_test.h"
 #include "accel/walk_space.h"
+#include "scenes/geometry/filter.h"
+#include "scenes/geometry/ray.h"
+#include "scenes/scene.h"
 
 namespace raymeter {
 

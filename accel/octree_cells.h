@@ -75,8 +75,8 @@ struct OctreeCells {
 /// Splits a cell in eight while it holds more than `leaf` primitives and is less than `depth` levels below
 /// the root (Glassner, "Space Subdivision for Fast Ray Tracing", 1984), level by level. A cell holds a
 /// primitive when its box, grown by the margin of walk_space.h, meets the primitive. A cell stays whole where
-/// all eight children would hold all of its primitives, and where the tree would exceed 64 references or
-/// nodes for each primitive (and 65,536 in all): `note` says so. Throws MemoryLimitExceeded.
+/// all eight children would hold all of its primitives, and where the tree would have more than 32 references
+/// or nodes for each primitive, and 65,536 besides: `note` says so. Throws MemoryLimitExceeded.
 OctreeCells build_octree_cells(const Scene& scene, std::uint32_t leaf, int depth, MemoryMeter& meter);
 
 }  // namespace raymeter

@@ -96,9 +96,4 @@ inline bool too_far(const WalkRay& walk, const WalkSpace& space) {
   return distance > space.far_limit;
 }
 
-/// Whether nothing entered at t = `enter` or later can beat a hit at `best_t`, nor tie with it.
-inline bool beyond(double enter, float best_t) {
-  return enter > latest(best_t);
-}
-
 }  // namespace raymeter

@@ -6,7 +6,8 @@
 namespace raymeter {
 
 /// Each reads one file whole or throws an Error that names the file and the line or byte offset. None
-/// allocates more than a small multiple of the file's size, whatever counts the file claims.
+/// allocates more than a small multiple of the file's size, whatever counts the file claims; but a glTF file
+/// may place one mesh in many nodes, and is read up to 2^24 vertices and as many triangles in all.
 
 /// Neutral File Format (Haines 1987), as its document says; see nff.cpp for its corners.
 SceneData read_nff(const std::filesystem::path& file);
