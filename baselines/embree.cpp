@@ -1,5 +1,7 @@
 #include "baselines/embree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -433,6 +435,17 @@ StructureKind embree_kind() {
           Answers::within_bound,
           parameters(),
           build};
+}
+
+std::string embree_version() {
+  const RTCDevice device = rtcNewDevice("threads=1");
+  if (!device) return "unknown";
+  const auto number = [&](RTCDeviceProperty part) { return rtcGetDeviceProperty(device, part); };
+  std::string version =
+      fmt::format("{}.{}.{}", number(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                  number(RTC_DEVICE_PROPERTY_VERSION_MINOR), number(RTC_DEVICE_PROPERTY_VERSION_PATCH));
+  rtcReleaseDevice(device);
+  return version;
 }
 
 }  // namespace raymeter

@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "accel/registry.h"
 
 namespace raymeter {
@@ -21,5 +23,9 @@ namespace raymeter {
 /// includes making the device, 0.1 ms, and the first one in a process also starts Embree, 1 ms (or the first
 /// build of counted-bvh does, with which a comparison begins).
 StructureKind embree_kind();
+
+/// Of the Embree that is loaded, which need not be the one whose headers were compiled: "3.13.5", or
+/// "unknown" where it gives no device. Starts Embree.
+std::string embree_version();
 
 }  // namespace raymeter

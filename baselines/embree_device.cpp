@@ -78,10 +78,6 @@ void check_coordinates(const Scene& scene, std::string_view structure) {
                               scene.name(), embree_largest_coordinate));
 }
 
-std::string embree_version() {
-  return RTC_VERSION_STRING;
-}
-
 std::string_view embree_default_isa() {
   for (const std::string_view isa : {"avx512", "avx2", "avx", "sse4.2"})
     if (cpu_has(isa)) return isa;

@@ -55,9 +55,6 @@ class EmbreeDevice {
 /// `structure`, if the scene has any.
 void check_coordinates(const Scene& scene, std::string_view structure);
 
-/// "3.13.5"
-std::string embree_version();
-
 /// The instruction set that `isa=default` comes to on this machine, in the words of that parameter.
 std::string_view embree_default_isa();
 

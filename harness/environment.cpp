@@ -15,12 +15,7 @@
 #include <string_view>
 #include <thread>
 
-#if __has_include(<embree4/rtcore_config.h>)
-#include <embree4/rtcore_config.h>
-#else
-#include <embree3/rtcore_config.h>
-#endif
-
+#include "baselines/embree.h"
 #include "scenes/base/float_mode.h"
 #include "scenes/base/hash.h"
 
@@ -111,10 +106,9 @@ Environment environment() {
       {"compiler", compiler()},
       {"build_type", RAYMETER_BUILD_TYPE},
       {"build_flags", RAYMETER_BUILD_FLAGS},
-      {"revision", RAYMETER_REVISION},
       {"build_id", fmt::format("{:016x}", build_id())},
-      {"embree", RTC_VERSION_STRING},
-      {"tbb", fmt::format("{}.{}", TBB_VERSION_MAJOR, TBB_VERSION_MINOR)},
+      {"embree", embree_version()},
+      {"tbb", TBB_runtime_version()},
       {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
       {"boost",
        fmt::format("{}.{}.{}", BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100)},
@@ -122,6 +116,20 @@ Environment environment() {
                                     NLOHMANN_JSON_VERSION_PATCH)},
       {"denormals", FlushDenormals::available ? "flushed in every build and trace (FTZ and DAZ)" : "kept"},
   };
+}
+
+std::string environment_id() {
+  static const std::string id = [] {
+    Hasher hasher;
+    for (const auto& [name, value] : environment()) {
+      // What differs from run to run on the same machine, or may.
+      if (name == "time" || name == "load_average" || name == "memory") continue;
+      hasher.text(name);
+      hasher.text(value);
+    }
+    return fmt::format("{:016x}", hasher.digest());
+  }();
+  return id;
 }
 
 std::uint64_t build_id() {

@@ -10,8 +10,12 @@ namespace raymeter {
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
 /// The processor, operating system, compiler, flags, library versions, float mode, huge pages, load and time
-/// of this process. The caller adds what only it knows (clock, pinned, Embree's instruction set).
+/// of this process. Embree and TBB are those that are loaded, the other libraries those it was compiled with.
 Environment environment();
+
+/// Identifies machine, system and build together: a hash of the entries of `environment` that are the same
+/// in every run (all but time, load and memory), in hexadecimal.
+std::string environment_id();
 
 /// Identifies this build: a hash of the bytes of the loaded Raymeter library, so that a rebuilt library never
 /// passes for the old one. 0 when its file can't be read.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "accel/memory_meter.h"
@@ -180,6 +181,12 @@ TEST(Embree, KeepsToItsMemoryLimitAndReportsItsMemory) {
   EXPECT_GE(stats.peak_bytes, stats.bytes);
   ASSERT_EQ(stats.bytes_by_part.size(), 1u);
   EXPECT_EQ(stats.bytes_by_part[0].second, stats.bytes);
+}
+
+TEST(Embree, SaysWhichVersionIsLoaded) {
+  const std::string version = embree_version();
+  EXPECT_TRUE(version.starts_with(std::to_string(RTC_VERSION_MAJOR) + ".")) << version;
+  EXPECT_EQ(std::count(version.begin(), version.end(), '.'), 2) << version;
 }
 
 TEST(Embree, RefusesWhatItDoesNotHave) {

@@ -1,8 +1,11 @@
 #include "harness/environment.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
+
+#include "baselines/embree.h"
 
 namespace raymeter {
 namespace {
@@ -17,6 +20,19 @@ TEST(Environment, NamesAreUniqueAndValuesAreNotEmpty) {
   for (const char* name : {"cpu", "cpu_features", "compiler", "build_flags", "build_id", "embree", "kernel",
                            "transparent_huge_pages", "load_average", "virtual_machine", "time"})
     EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST(Environment, IdIsTheSameInEveryRunOfAProcess) {
+  const std::string id = environment_id();
+  EXPECT_EQ(id.size(), 16u);
+  EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos) << id;
+  EXPECT_EQ(environment_id(), id);
+}
+
+TEST(Environment, LibrariesAreThoseThatAreLoaded) {
+  const Environment entries = environment();
+  EXPECT_THAT(entries, testing::Contains(std::pair<std::string, std::string>("embree", embree_version())));
+  EXPECT_THAT(entries, testing::Contains(testing::Pair("tbb", testing::MatchesRegex("[0-9]+\\.[0-9]+.*"))));
 }
 
 TEST(Environment, BuildIdIsKnownAndStable) {
