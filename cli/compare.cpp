@@ -152,9 +152,7 @@ int run_compare(const CompareOptions& options, const Registry& registry) {
     std::filesystem::create_directories(folder, status);
     if (status) throw Error(fmt::format("{}: can't make this folder: {}", options.out, status.message()));
     log.emplace(folder / "records.jsonl");
-    Environment about = environment();
-    about.emplace_back("clock", clock_name(options.threads));
-    write_environment(folder / "environment.json", about);
+    write_environment(folder / "environment.json", environment_id(), environment());
   }
 
   Recorder recorder(registry, log ? &*log : nullptr);

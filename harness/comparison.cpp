@@ -163,6 +163,7 @@ std::string key_of(const Context& context, const RayBatch& batch, const Argument
   hasher.value(batch.hash);
   for (const std::string& text : {batch.name, arguments.canonical(), context.baseline, context.build})
     hasher.text(text);
+  hasher.text(environment_id());
   hasher.value(race.rounds);
   hasher.value(race.threads);
   hasher.value(race.min_round_seconds);
@@ -191,6 +192,7 @@ Record blank_record(const Context& context, const JudgedBatch& batch, const Argu
   r.threads = context.settings.race.threads;
   r.seed = context.settings.batches.seed;
   r.build_id = context.build;
+  r.environment_id = environment_id();
   return r;
 }
 
@@ -240,6 +242,7 @@ void add_note(Record& r, std::string_view text) {
 void add_race(Record& r, const RaceResult& result, unsigned wanted_rounds) {
   r.rounds = result.rounds();
   if (result.rounds() == 0) return;  // no rays: nothing to time
+  if (result.threads == 1) r.pinned = result.pinned ? "yes" : "no";
   r.mrays_per_s = result.structure.median_rays_per_second / 1e6;
   r.baseline_mrays_per_s = result.baseline.median_rays_per_second / 1e6;
   r.ratio = result.ratio;

@@ -37,7 +37,7 @@ struct RaceResult {
   double spread = 0;           ///< interquartile range of the ratios over their median
   bool noisy = false;          ///< the spread exceeds `noisy_spread`
   bool pinned = false;         ///< the tracing thread was held on one CPU
-  unsigned threads = 1;        ///< see clock_name for what was measured
+  unsigned threads = 1;        ///< one: CPU time was measured; more: wall time
   unsigned rounds() const { return static_cast<unsigned>(ratios.size()); }
 };
 

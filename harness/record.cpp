@@ -44,7 +44,9 @@ std::span<const Column> columns() {
       {"cell_steps_per_ray", "1", "elementary cells visited (N_ETS)", &R::cell_steps_per_ray},
       {"empty_cell_steps_per_ray", "1", "of those, empty ones (N_EETS)", &R::empty_cell_steps_per_ray},
       {"tests_per_ray", "1", "ray-primitive tests (N_IT)", &R::tests_per_ray},
-      {"mrays_per_s", "10^6/s", "median throughput of the rounds", &R::mrays_per_s},
+      {"mrays_per_s", "10^6/s",
+       "median throughput of the rounds: rays over CPU time at one thread, wall time at more",
+       &R::mrays_per_s},
       {"ratio", "1", "throughput over the baseline's: median of the per-round ratios of one race", &R::ratio},
       {"ratio_low", "1",
        "lower end of the order-statistic interval of that median; its confidence is 1 - 2^(1 - rounds) up to "
@@ -67,7 +69,8 @@ std::span<const Column> columns() {
       {"rounds", "1", "rounds of the race", &R::rounds},
       {"note", "", "what was clamped, substituted or failed, in words", &R::note},
       {"status", "", "ok, failed (to build) or skipped; a failed row has no results", &R::status},
-      {"key", "", "hash of scene, rays, spec, settings and build: what a resumed run looks up", &R::key},
+      {"key", "", "hash of scene, rays, spec, settings and environment: what a resumed run looks up",
+       &R::key},
       {"primitives", "1", "primitives of the scene", &R::primitives},
       {"query", "", "closest or any", &R::query},
       {"order", "", "order of the rays: tiled, scanline or shuffled", &R::order},
@@ -76,6 +79,7 @@ std::span<const Column> columns() {
        &R::baseline_mrays_per_s},
       {"spread", "1", "interquartile range of the per-round ratios over their median", &R::spread},
       {"noisy", "", "yes where the spread is too wide to rely on", &R::noisy},
+      {"pinned", "", "whether the one tracing thread was held on one CPU: yes or no", &R::pinned},
       {"empty_cells", "1", "elementary cells without a primitive (N_EV)", &R::empty_cells},
       {"inner_nodes", "1", "inner nodes (N_IN)", &R::inner_nodes},
       {"depth", "1", "levels below the root", &R::depth},
@@ -95,6 +99,8 @@ std::span<const Column> columns() {
        &R::brute_forced},
       {"seed", "1", "seed of rays and samples", &R::seed},
       {"build_id", "", "hash of the library that made this record", &R::build_id},
+      {"environment_id", "", "hash of machine, system and build: the entry in environment.json",
+       &R::environment_id},
   };
   return table;
 }

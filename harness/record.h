@@ -28,12 +28,12 @@ struct Record {
   Count steps_p50, steps_p99, steps_max, tests_p50, tests_p99, tests_max;
 
   Number mrays_per_s, baseline_mrays_per_s, ratio, ratio_low, ratio_high, spread;
-  Text noisy;
+  Text noisy, pinned;
 
   Count right, within_bound, tie, edge, grazing, at_limit, degenerate, wrong, not_given, unexplained,
       brute_forced;
 
-  Text isa, build_id;
+  Text isa, build_id, environment_id;
   Count threads, rounds, seed;
   Text status, note;
 };

@@ -100,10 +100,6 @@ double trace(const Structure& structure, const BatchView& batch, BatchAnswers& a
   return now(clock) - start;
 }
 
-const char* clock_name(unsigned threads) {
-  return threads > 1 ? "wall-clock time" : "thread CPU time";
-}
-
 CounterTotals count(const Structure& structure, const BatchView& batch, BatchAnswers& answers,
                     unsigned threads) {
   make_room(answers, batch);

@@ -30,14 +30,11 @@ inline constexpr std::size_t chunk_rays = std::size_t{1} << 16u;
 
 /// Traces all rays of `batch` chunk by chunk with denormals flushed, on this thread (threads = 1) or on
 /// `threads` of them, `passes` times over, and returns the seconds that all passes took together: CPU time of
-/// this thread for one thread, wall-clock time for more (see `clock_name`). The clock is read before the
+/// this thread for one thread, wall-clock time for more. The clock is read before the
 /// first pass and after the last, so that many passes of a few rays time the rays, not the clock. Making room
 /// for the answers is not timed. `prepare` is the caller's affair.
 double trace(const Structure& structure, const BatchView& batch, BatchAnswers& answers, unsigned threads = 1,
              unsigned passes = 1);
-
-/// "thread CPU time" or "wall-clock time": what `trace` measures on that many threads.
-const char* clock_name(unsigned threads);
 
 /// The counted pass: the same answers, with the counters of all rays together. The structure must count. The
 /// rays are shared out evenly, one call of the structure for each thread, or for each 2^20 rays.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -118,11 +119,20 @@ void write_csv(const std::filesystem::path& file, std::span<const Record> record
   replace_file(file, text.str());
 }
 
-void write_environment(const std::filesystem::path& file,
+void write_environment(const std::filesystem::path& file, const std::string& id,
                        std::span<const std::pair<std::string, std::string>> entries) {
-  Json object = Json::object();
-  for (const auto& [name, value] : entries) object[name] = value;
-  replace_file(file, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  Json environments = Json::object();
+  if (std::filesystem::exists(file)) {
+    std::ostringstream text;  // stays empty where the file can't be read
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    environments = Json::parse(text.str(), nullptr, false);
+    const auto is_object = [](const Json& entry) { return entry.is_object(); };
+    if (!environments.is_object() || !std::ranges::all_of(environments, is_object))
+      throw Error(fmt::format("{}: not a JSON object of environments by their ids", file.string()));
+  }
+  Json& environment = environments[id] = Json::object();
+  for (const auto& [name, value] : entries) environment[name] = value;
+  replace_file(file, environments.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace raymeter

@@ -31,8 +31,10 @@ class RecordLog {
 /// written.
 void write_csv(const std::filesystem::path& file, std::span<const Record> records);
 
-/// A flat JSON object of names and texts, in order: environment.json.
-void write_environment(const std::filesystem::path& file,
+/// environment.json: a JSON object with an entry for each environment that made records in this folder, by
+/// its id; each is an object of names and texts, in order. Adds the entry or replaces the one of the same id,
+/// and keeps the others. Throws Error when the file can't be written, or holds anything else.
+void write_environment(const std::filesystem::path& file, const std::string& id,
                        std::span<const std::pair<std::string, std::string>> entries);
 
 }  // namespace raymeter

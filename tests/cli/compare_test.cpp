@@ -124,6 +124,10 @@ TEST_F(Compare, DefaultsRaceAllStructuresOverFourKindsOfRays) {
     EXPECT_GE(std::stod(row.at("brute_forced")), std::min(4096.0, std::stod(row.at("rays"))));
   }
   EXPECT_THAT(content(folder_ / "environment.json"), HasSubstr("compiler"));
+  for (const CsvRow& row : rows) {
+    EXPECT_THAT(content(folder_ / "environment.json"), HasSubstr("\"" + row.at("environment_id") + "\": {"));
+    EXPECT_THAT(row.at("pinned"), testing::AnyOf("yes", "no"));
+  }
 }
 
 TEST_F(Compare, TheColumnsBeginWithTheAgreedOnes) {

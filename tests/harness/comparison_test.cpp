@@ -11,6 +11,7 @@
 
 #include "baselines/register_baselines.h"
 #include "boxed_groups.h"
+#include "harness/environment.h"
 #include "scenes/base/error.h"
 #include "scenes/open_scene.h"
 
@@ -167,6 +168,21 @@ TEST(Comparison, WithoutABaselineThereIsNoRatio) {
   EXPECT_FALSE(collector.records[0].ratio.has_value());
   EXPECT_TRUE(collector.records[0].mrays_per_s.has_value());
   EXPECT_THAT(collector.records[0].note, testing::HasSubstr("no luck today"));
+}
+
+TEST(Comparison, RecordsSayWhereTheyWereMadeAndWhetherTheThreadWasHeld) {
+  const Registry registry = full_registry();
+  const Scene scene = open_scene("soup:triangles=100");
+  ComparisonSettings settings = quick_settings({"embree"}, {"primary"});
+  for (const unsigned threads : {1u, 2u}) {
+    settings.race.threads = threads;
+    Collector collector;
+    compare_structures(scene, registry, settings, collector);
+    ASSERT_EQ(collector.records.size(), 1u);
+    EXPECT_EQ(collector.records[0].environment_id, environment_id());
+    EXPECT_THAT(collector.records[0].pinned,
+                threads == 1 ? testing::AnyOf("yes", "no") : testing::AnyOf("", ""));
+  }
 }
 
 TEST(Comparison, FinishedRecordsAreNotMeasuredAgain) {

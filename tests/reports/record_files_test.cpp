@@ -76,6 +76,39 @@ TEST_F(RecordFiles, ForeignContentIsRefusedWithItsLine) {
   }
 }
 
+TEST_F(RecordFiles, EnvironmentsOfOtherMachinesAreKept) {
+  using Entries = std::vector<std::pair<std::string, std::string>>;
+  write_environment(file("environment.json"), "aa", Entries{{"time", "1"}, {"cpu", "old"}});
+  write_environment(file("environment.json"), "bb", Entries{{"time", "2"}, {"cpu", "new \"quoted\""}});
+  write_environment(file("environment.json"), "aa", Entries{{"time", "3"}});
+  EXPECT_EQ(content(file("environment.json")), R"({
+  "aa": {
+    "time": "3"
+  },
+  "bb": {
+    "time": "2",
+    "cpu": "new \"quoted\""
+  }
+}
+)");
+}
+
+TEST_F(RecordFiles, AForeignEnvironmentIsRefusedAndLeftAlone) {
+  for (const char* foreign : {"", "{", "[]", "3", "{\"cpu\": \"a flat object\"}", "{} {}"}) {
+    std::ofstream(file("environment.json"), std::ios::binary) << foreign;
+    try {
+      write_environment(file("environment.json"), "aa", {});
+      FAIL() << "accepted " << foreign;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("environment.json: not a JSON object of environments"));
+    }
+    EXPECT_EQ(content(file("environment.json")), foreign);
+  }
+  std::filesystem::remove(file("environment.json"));
+  std::filesystem::create_directory(file("environment.json"));
+  EXPECT_THROW(write_environment(file("environment.json"), "aa", {}), Error);
+}
+
 TEST_F(RecordFiles, CsvHasAHeaderQuotesAndEmptyFields) {
   write_csv(file("records.csv"), std::vector<Record>{example()});
   const std::string text = content(file("records.csv"));
