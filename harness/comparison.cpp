@@ -247,8 +247,8 @@ void add_race(Record& r, const RaceResult& result, unsigned wanted_rounds) {
   r.baseline_mrays_per_s = result.baseline.median_rays_per_second / 1e6;
   r.ratio = result.ratio;
   if (result.rounds() < 3) {
-    add_note(r, fmt::format("{}: {} of {} rounds in the time budget, no interval", r.batch, result.rounds(),
-                            wanted_rounds));
+    add_note(r,
+             fmt::format("{} of {} rounds fit the time budget: no interval", result.rounds(), wanted_rounds));
     return;
   }
   r.ratio_low = result.ratio_interval.low;
