@@ -2,36 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 
 #include "harness/ray_kinds.h"
 #include "harness/record.h"
+#include "reports/text.h"
 #include "scenes/generators/generators.h"
 
 namespace raymeter {
 namespace {
 
-constexpr std::size_t page_width = 100;
-
-/// Prints text from column `indent` on, breaking it between words; the first line begins with `head`.
-void print_wrapped(std::string head, std::string_view text, std::size_t indent) {
-  std::string line = std::move(head);
-  line.resize(std::max(line.size(), indent), ' ');
-  bool has_word = false;
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (has_word && line.size() + 1 + word.size() > page_width) {
-      fmt::print("{}\n", line);
-      line.assign(indent, ' ');
-      has_word = false;
-    }
-    line += has_word ? " " : "";
-    line += word;
-    has_word = true;
-  }
-  fmt::print("{}\n", line);
+void print_wrapped(std::string_view head, std::string_view text, std::size_t indent) {
+  fmt::print("{}", wrapped(head, text, indent));
 }
 
 void print_parameters(std::span<const Parameter> parameters) {

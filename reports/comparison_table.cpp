@@ -9,12 +9,12 @@
 #include "harness/grading.h"
 #include "harness/ray_kinds.h"
 #include "harness/statistics.h"
+#include "reports/text.h"
 
 namespace raymeter {
 namespace {
 
 constexpr std::size_t label_width = 22;
-constexpr std::size_t page_width = 100;
 
 /// A number to about three digits; "-" when absent.
 std::string number(const Record::Number& value) {
@@ -55,26 +55,6 @@ std::string brief_spec(const std::string& spec, const Registry& registry) {
   return registry.arguments(parse_spec(spec)).brief();
 }
 
-/// Breaks words so that lines fit the page, the first one indented by `indent`, the others by 2 more.
-std::string wrapped(const std::string& text, std::size_t indent) {
-  std::string result, line(indent, ' ');
-  bool has_word = false;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::string word = text.substr(at, end - at);
-    if (has_word && line.size() + 1 + word.size() > page_width) {
-      result += line + "\n";
-      line = std::string(indent + 2, ' ');
-      has_word = false;
-    }
-    line += (has_word ? " " : "") + word;
-    has_word = true;
-    at = end + 1;
-  }
-  return result + line + "\n";
-}
-
 /// A label that does not fit its column has a line of its own above the numbers.
 std::string row(const Record& record, const std::string& label) {
   auto milliseconds = record.build_s, megabytes = Record::Number{};
@@ -83,7 +63,7 @@ std::string row(const Record& record, const std::string& label) {
   const std::string interval =
       record.ratio_low ? number(record.ratio_low) + ".." + number(record.ratio_high) : "-";
   const bool fits = label.size() <= label_width;
-  return (fits ? "" : wrapped(label, 2)) +
+  return (fits ? "" : wrapped("  ", label, 4)) +
          fmt::format("  {:<{}}{:>8}{:>8}{:>8}{:>8}{} {:>14}{:>8}{:>8} {}\n", fits ? label : "", label_width,
                      number(milliseconds), number(megabytes), number(record.mrays_per_s),
                      number(record.ratio), record.noisy.empty() ? " " : "~", interval,
@@ -95,16 +75,18 @@ std::string row(const Record& record, const std::string& label) {
 std::string comparison_table(std::span<const Record> records, const Registry& registry) {
   if (records.empty()) return "";
   const Record& first = records.front();
-  std::string text = wrapped(fmt::format("{}  {} primitives, scene hash {}", first.scene,
+  std::string text = wrapped("",
+                             fmt::format("{}  {} primitives, scene hash {}", first.scene,
                                          grouped(first.primitives.value_or(0)), first.scene_hash),
-                             0);
+                             2);
   std::uint64_t rounds = 0;
   for (const Record& record : records) rounds = std::max(rounds, record.rounds.value_or(0));
   text += wrapped(
+      "",
       fmt::format("{} thread{}; ratio against {}: median of {} rounds and its {:.3g}% interval",
                   first.threads.value_or(1), first.threads.value_or(1) == 1 ? "" : "s",
                   brief_spec(first.baseline, registry), rounds, 100 * median_interval_confidence(rounds)),
-      0);
+      2);
 
   std::vector<std::string> batches;
   for (const Record& record : records)
@@ -142,7 +124,7 @@ std::string comparison_table(std::span<const Record> records, const Registry& re
     }
   }
   if (!remarks.empty()) text += "\n";
-  for (const auto& [head, what] : remarks) text += wrapped(head + what, 2);
+  for (const auto& [head, what] : remarks) text += wrapped("  ", head + what, 4);
   return text;
 }
 
