@@ -41,7 +41,7 @@ struct StructureStats {
   std::uint32_t depth = 0;                    ///< levels below the root that exist
   std::uint64_t bytes = 0;                    ///< held after the build, without the scene
   std::uint64_t peak_bytes = 0;               ///< most held at once while building
-  std::vector<std::pair<std::string, std::uint64_t>> bytes_by_part;
+  std::vector<std::pair<std::string, std::uint64_t>> bytes_by_part;  ///< names without blanks
   std::string isa;  ///< instruction set of the traversal, where it chooses one; empty: what the build is for
   std::string
       note;  ///< what was clamped or substituted, in words; empty when the spec was followed to the letter

@@ -153,9 +153,11 @@ RayBatch make_batch(const Scene& scene, const Arguments& kind, const BatchSettin
 
   RayBatch batch = begin(kind, settings.order);
   if (kind.name() == "random") {
-    const auto count = static_cast<std::uint64_t>(kind.integer("count"));
+    const auto given = static_cast<std::uint64_t>(kind.integer("count"));
+    const std::uint64_t count = given ? given : primary.rays.size();
+    batch.name = ray_arguments({"random", {{"count", fmt::format("{}", count)}}}).canonical();
     batch.order = RayOrder::shuffled;  // as it is
-    add_chords(batch, scene, settings.seed, count ? count : primary.rays.size());
+    add_chords(batch, scene, settings.seed, count);
     finish(batch);
     return batch;
   }

@@ -14,7 +14,8 @@ namespace raymeter {
 
 /// Rays that every structure gets, unchanged.
 struct RayBatch {
-  std::string name;  ///< canonical spec of the kind: "primary", "ao:length=0.05:samples=1", ...
+  std::string name;  ///< canonical spec of the kind: "primary", "ao:length=0.05:samples=1", ...; of random,
+                     ///< with the count that there is, not 0
   std::string kind;  ///< primary, shadow, reflection, diffuse, ao, random
   QueryKind query = QueryKind::closest;
   RayOrder order = RayOrder::tiled;

@@ -83,6 +83,7 @@ std::span<const Column> columns() {
       {"empty_cells", "1", "elementary cells without a primitive (N_EV)", &R::empty_cells},
       {"inner_nodes", "1", "inner nodes (N_IN)", &R::inner_nodes},
       {"depth", "1", "levels below the root", &R::depth},
+      {"bytes_by_part", "", "`bytes` by part: part=bytes, a blank between parts", &R::bytes_by_part},
       {"test_blocks_per_ray", "1", "blocks of primitives tested together", &R::test_blocks_per_ray},
       {"distinct_tests_per_ray", "1", "tests less the repeated ones", &R::distinct_tests_per_ray},
       {"decides_per_ray", "1", "tests that the filter could not settle", &R::decides_per_ray},

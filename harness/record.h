@@ -21,6 +21,7 @@ struct Record {
   Text ray_hash, reference_hash, hit_hash;
 
   Number build_s;
+  Text bytes_by_part;
   Count bytes, peak_bytes, nx, ny, nz, cells, empty_cells, inner_nodes, references, depth;
 
   Number steps_per_ray, cell_steps_per_ray, empty_cell_steps_per_ray, tests_per_ray, test_blocks_per_ray,

@@ -95,6 +95,9 @@ TEST(Comparison, EveryExactStructureIsRightOnEveryKindOfRay) {
     }
     EXPECT_EQ(record.wrong, 0u);
     EXPECT_EQ(record.unexplained, 0u);
+    if (record.structure == "grid") {
+      EXPECT_THAT(record.bytes_by_part, testing::MatchesRegex("cells=[0-9]+ references=[0-9]+"));
+    }
   }
 }
 

@@ -77,6 +77,7 @@ TEST(RayBatch, CountsNamesAndQueries) {
   EXPECT_EQ(tiled().secondary("reflection").rays.size(), found);
   EXPECT_EQ(tiled().secondary("diffuse:samples=3").rays.size(), 3 * found);
   EXPECT_EQ(tiled().secondary("random").rays.size(), 1200u);
+  EXPECT_EQ(tiled().secondary("random").name, "random:count=1200");
   EXPECT_EQ(tiled().secondary("random:count=17").rays.size(), 17u);
   const RayBatch ao = tiled().secondary("ao:samples=2");
   EXPECT_EQ(ao.rays.size(), 2 * found);
