@@ -6,7 +6,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/note.h"
+
 namespace raymeter {
+
+Parameter fit_parameter() {
+  return {.name = "fit",
+          .type = ParameterType::choice,
+          .default_value = "exact",
+          .meaning = "register primitives where their bounding box (box) or they themselves (exact) lie",
+          .choices = {"box", "exact"}};
+}
+
+Fit fit_of(const Arguments& arguments) {
+  return arguments.text("fit") == "box" ? Fit::box : Fit::exact;
+}
 
 TriangleOverlap::TriangleOverlap(const Triangle& triangle, const Vec3d& half, double slack)
     : corner_(to_double(triangle.a)) {
@@ -49,9 +63,8 @@ CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, ChosenReso
       work += cells_of_box(grid, scene.bounds_of(p), space.margin).cells();
     if (work <= limit) {
       if (chosen.n != asked) {
-        if (!chosen.note.empty()) chosen.note += "; ";
-        chosen.note += fmt::format("clamped from {} to {} (limit {} cells in all primitives' boxes)",
-                                   fmt::join(asked, "x"), fmt::join(chosen.n, "x"), limit);
+        add_note(chosen.note, fmt::format("clamped from {} to {} (limit {} cells in all primitives' boxes)",
+                                          fmt::join(asked, "x"), fmt::join(chosen.n, "x"), limit));
         chosen.clamped = true;
       }
       return grid;

@@ -8,6 +8,7 @@
 #include "accel/cell_grid.h"
 #include "accel/grid_resolution.h"
 #include "accel/walk_space.h"
+#include "scenes/base/spec.h"
 #include "scenes/geometry/primitives.h"
 #include "scenes/scene.h"
 
@@ -23,6 +24,9 @@ enum class Fit : std::uint8_t {
   box,    ///< in every cell that their bounding box meets
   exact,  ///< only in cells that they meet themselves: triangles and spheres; others as `box`
 };
+/// The parameter `fit` of grids, and the value given for it.
+Parameter fit_parameter();
+Fit fit_of(const Arguments& arguments);
 
 /// The surface of a triangle against boxes of one size: the separating axes of Akenine-Moeller, "Fast 3D
 /// Triangle-Box Overlap Testing", 2001, except the three of the box itself, with the triangle's part of the

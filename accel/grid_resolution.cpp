@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "accel/note.h"
 #include "scenes/base/error.h"
 
 namespace raymeter {
@@ -31,11 +32,6 @@ const std::array<NamedRule, 7> named_rules{{
     {"pbrt", {Kind::pbrt, 3}},
     {"kalojanov", {Kind::density, 0.12}},
 }};
-
-void add_note(std::string& note, const std::string& text) {
-  if (!note.empty()) note += "; ";
-  note += text;
-}
 
 Wanted by_amount(double amount, const ShapeSizes& shapes, std::string& note) {
   Wanted n{1, 1, 1};

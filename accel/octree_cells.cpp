@@ -31,14 +31,9 @@ class OctreeBuilder {
         meter_(meter),
         bounds_(MeteredAllocator<Bounds>(meter)),
         children_of_(MeteredAllocator<std::uint8_t>(meter)),
-        tree_{OctreeSpace(scene.bounds(), depth),
-              MeteredVector<OctreeNode>(MeteredAllocator<OctreeNode>(meter)),
-              MeteredVector<std::uint32_t>(MeteredAllocator<std::uint32_t>(meter)),
-              0,
-              0,
-              0,
-              0,
-              {}} {}
+        tree_(meter) {
+    tree_.space = OctreeSpace(scene.bounds(), depth);
+  }
 
   OctreeCells build() {
     // The root holds every primitive.
@@ -187,15 +182,7 @@ class OctreeBuilder {
 }  // namespace
 
 OctreeCells build_octree_cells(const Scene& scene, std::uint32_t leaf, int depth, MemoryMeter& meter) {
-  if (scene.bounds().empty())
-    return {OctreeSpace(),
-            MeteredVector<OctreeNode>(MeteredAllocator<OctreeNode>(meter)),
-            MeteredVector<std::uint32_t>(MeteredAllocator<std::uint32_t>(meter)),
-            0,
-            0,
-            0,
-            0,
-            {}};
+  if (scene.bounds().empty()) return OctreeCells(meter);
   return OctreeBuilder(scene, leaf, depth, meter).build();
 }
 

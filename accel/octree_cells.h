@@ -64,6 +64,9 @@ struct OctreeNode {
 
 /// An octree as it is built: nodes with the eight children of each side by side, the root first.
 struct OctreeCells {
+  explicit OctreeCells(MemoryMeter& meter)
+      : nodes(MeteredAllocator<OctreeNode>(meter)), references(MeteredAllocator<std::uint32_t>(meter)) {}
+
   OctreeSpace space;
   MeteredVector<OctreeNode> nodes;          ///< none when the scene is empty
   MeteredVector<std::uint32_t> references;  ///< the primitives of leaf after leaf

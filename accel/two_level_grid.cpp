@@ -10,6 +10,7 @@
 #include "accel/cell_query.h"
 #include "accel/grid_resolution.h"
 #include "accel/grid_walk.h"
+#include "accel/note.h"
 #include "accel/per_ray_structure.h"
 #include "scenes/base/error.h"
 
@@ -75,11 +76,11 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
     stats_.bytes = meter_.bytes();
     stats_.peak_bytes = meter_.peak();
     stats_.bytes_by_part = {
-        {"top cells", top_lists_.offset_bytes() + subgrid_of_.capacity() * sizeof(std::uint32_t)},
-        {"top references", top_lists_.reference_bytes()},
+        {"top_cells", top_lists_.offset_bytes() + subgrid_of_.capacity() * sizeof(std::uint32_t)},
+        {"top_references", top_lists_.reference_bytes()},
         {"sub-grids", subgrids_.capacity() * sizeof(SubGrid)},
-        {"leaf cells", leaf_lists_.offset_bytes()},
-        {"leaf references", leaf_lists_.reference_bytes()}};
+        {"leaf_cells", leaf_lists_.offset_bytes()},
+        {"leaf_references", leaf_lists_.reference_bytes()}};
   }
 
   StructureStats stats() const override { return stats_; }
@@ -145,9 +146,10 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
       if (cells <= limits.cells && work <= work_limit) {
         if (leaf.value != options.leaf.value)
           add_note(
+              stats_.note,
               fmt::format("leaf-density clamped from {} to {} (limit {} cells, {} in all primitives' boxes)",
                           options.leaf.value, leaf.value, limits.cells, work_limit));
-        if (clamped) add_note(fmt::format("{} sub-grids clamped", clamped));
+        if (clamped) add_note(stats_.note, fmt::format("{} sub-grids clamped", clamped));
         return cells;
       }
       leaf.value /= 2;
@@ -185,11 +187,6 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
     return sizes;
   }
 
-  void add_note(const std::string& text) {
-    if (!stats_.note.empty()) stats_.note += "; ";
-    stats_.note += text;
-  }
-
   MemoryMeter meter_;
   CellLists top_lists_, leaf_lists_;
   MeteredVector<std::uint32_t> subgrid_of_;  // by top cell
@@ -210,13 +207,7 @@ StructureKind two_level_grid_kind() {
                         "a cell with more primitives than this gets a grid of its own", 0, 1e9});
   parameters.push_back({"leaf-density", ParameterType::number, "3",
                         "cells of that grid for each primitive of the cell", 1e-3, 1e3});
-  parameters.push_back({"fit",
-                        ParameterType::choice,
-                        "exact",
-                        "register primitives where their bounding box (box) or they themselves (exact) lie",
-                        0,
-                        0,
-                        {"box", "exact"}});
+  parameters.push_back(fit_parameter());
   return {"two-level-grid",
           "a uniform grid whose crowded cells hold a grid of their own",
           "Jevans & Wyvill 1989; walk and lists as the grid's",
@@ -227,7 +218,7 @@ StructureKind two_level_grid_kind() {
             options.top = resolution_rule(arguments, {ResolutionRule::Kind::density, 0.1});
             options.leaf = {ResolutionRule::Kind::density, arguments.number("leaf-density")};
             options.threshold = static_cast<std::uint64_t>(arguments.integer("threshold"));
-            options.fit = arguments.text("fit") == "box" ? Fit::box : Fit::exact;
+            options.fit = fit_of(arguments);
             return std::make_unique<TwoLevelGrid>(input, options);
           }};
 }

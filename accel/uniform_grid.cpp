@@ -92,13 +92,7 @@ StructureKind grid_kind() {
 
 StructureKind tunable_grid_kind() {
   auto parameters = resolution_parameters("density 4");
-  parameters.push_back({"fit",
-                        ParameterType::choice,
-                        "exact",
-                        "register primitives where their bounding box (box) or they themselves (exact) lie",
-                        0,
-                        0,
-                        {"box", "exact"}});
+  parameters.push_back(fit_parameter());
   parameters.push_back(
       {"mailbox", ParameterType::flag, "off",
        "remember the last primitives that a ray tested (8 slots), and don't test them again"});
@@ -111,7 +105,7 @@ StructureKind tunable_grid_kind() {
           [](const Arguments& arguments, const BuildInput& input) -> std::unique_ptr<Structure> {
             Options options;
             options.rule = resolution_rule(arguments, {ResolutionRule::Kind::density, 4});
-            options.fit = arguments.text("fit") == "box" ? Fit::box : Fit::exact;
+            options.fit = fit_of(arguments);
             options.mailbox = arguments.flag("mailbox");
             return std::make_unique<UniformGrid>(input, options);
           }};

@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "accel/note.h"
 #include "harness/environment.h"
 #include "harness/grading.h"
 #include "harness/ray_kinds.h"
@@ -202,6 +203,8 @@ void add_build(Record& r, const Built& built) {
   r.build_s = built.seconds;
   r.bytes = stats.bytes;
   r.peak_bytes = stats.peak_bytes;
+  for (const auto& [part, bytes] : stats.bytes_by_part)
+    r.bytes_by_part += fmt::format("{}{}={}", r.bytes_by_part.empty() ? "" : " ", part, bytes);
   r.nx = present(stats.resolution[0]);
   r.ny = present(stats.resolution[1]);
   r.nz = present(stats.resolution[2]);
@@ -235,10 +238,6 @@ void add_counters(Record& r, const CounterTotals& totals) {
   r.tests_max = totals.tests_histogram.maximum();
 }
 
-void add_note(Record& r, std::string_view text) {
-  r.note += fmt::format("{}{}", r.note.empty() ? "" : "; ", text);
-}
-
 void add_race(Record& r, const RaceResult& result, unsigned wanted_rounds) {
   r.rounds = result.rounds();
   if (result.rounds() == 0) return;  // no rays: nothing to time
@@ -247,7 +246,7 @@ void add_race(Record& r, const RaceResult& result, unsigned wanted_rounds) {
   r.baseline_mrays_per_s = result.baseline.median_rays_per_second / 1e6;
   r.ratio = result.ratio;
   if (result.rounds() < 3) {
-    add_note(r,
+    add_note(r.note,
              fmt::format("{} of {} rounds fit the time budget: no interval", result.rounds(), wanted_rounds));
     return;
   }
@@ -296,7 +295,7 @@ Record measure(const Context& context, Structure* baseline, const Built& built, 
   r.reference_hash = hex(hit_hash(batch.truth.answers));
   r.brute_forced = batch.truth.brute_forced;
   r.status = consistent ? "ok" : "inconsistent";
-  if (!consistent) add_note(r, "the counted pass gave other answers than the timed one");
+  if (!consistent) add_note(r.note, "the counted pass gave other answers than the timed one");
   return r;
 }
 
@@ -337,7 +336,8 @@ void compare_structures(const Scene& scene, const Registry& registry, const Comp
       if (built->structure) {
         Record record =
             measure(context, baseline->structure.get(), *built, policy, batch, std::move(blank), observer);
-        if (!baseline->structure) add_note(record, "no ratio, the baseline failed: " + baseline->failure);
+        if (!baseline->structure)
+          add_note(record.note, "no ratio, the baseline failed: " + baseline->failure);
         observer.record(record);
       } else {
         blank.status = "failed";
