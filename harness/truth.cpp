@@ -3,15 +3,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <thread>
 
 #include "accel/primitive_test.h"
+#include "baselines/brute_force.h"
 #include "harness/dispute.h"
-#include "scenes/base/float_mode.h"
 #include "scenes/base/random.h"
 
 namespace raymeter {
@@ -22,63 +20,6 @@ float decide_primitive(const Scene& scene, std::uint32_t primitive, const Filter
   NoProbe probe;
   test_closest(scene, primitive, ray, hit, probe);
   return hit.t;
-}
-
-/// Triangles laid out so that the compiler tests several at once.
-struct TriangleBlock {
-  static constexpr std::uint32_t size = 256;
-  std::array<std::array<float, size>, 9> values;  // a, b - a, c - a
-  std::array<std::int32_t, size> outside;
-
-  void load(const Scene& scene, std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Triangle triangle = scene.triangle(first + i);
-      const Vec3 e1 = triangle.b - triangle.a, e2 = triangle.c - triangle.a;
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto row = static_cast<std::size_t>(axis);
-        values[row][i] = triangle.a[axis];
-        values[3 + row][i] = e1[axis];
-        values[6 + row][i] = e2[axis];
-      }
-    }
-  }
-  void filter(const FilterRay& ray, std::uint32_t count) {
-    const Vec3 d = ray.direction, o = ray.ray.origin;
-    const auto& [ax, ay, az, ex, ey, ez, fx, fy, fz] = values;
-    for (std::uint32_t i = 0; i < count; ++i)
-      outside[i] = filter::passes_outside(d, {o.x - ax[i], o.y - ay[i], o.z - az[i]}, {ex[i], ey[i], ez[i]},
-                                          {fx[i], fy[i], fz[i]});
-  }
-};
-
-/// Calls test(index of ray, its FilterRay, primitive) for every pair that is not certainly a miss, until it
-/// returns true for the ray. A block of primitives stays in the cache while all rays are tested against it.
-template <class Test>
-void for_pairs(const Scene& scene, std::span<const Ray> rays, const Test& test) {
-  struct PendingRay {
-    std::size_t index;
-    FilterRay filter;
-  };
-  std::vector<PendingRay> pending;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (is_traceable(rays[i])) pending.push_back({i, FilterRay(rays[i])});
-
-  const auto block = std::make_unique<TriangleBlock>();
-  const auto triangles = static_cast<std::uint32_t>(scene.triangle_count());
-  for (std::uint32_t first = 0; first < triangles; first += TriangleBlock::size) {
-    const std::uint32_t count = std::min(TriangleBlock::size, triangles - first);
-    block->load(scene, first, count);
-    std::erase_if(pending, [&](const PendingRay& ray) {
-      block->filter(ray.filter, count);
-      for (std::uint32_t i = 0; i < count; ++i)
-        if (!block->outside[i] && test(ray.index, ray.filter, first + i)) return true;
-      return false;
-    });
-  }
-  const auto primitives = static_cast<std::uint32_t>(scene.primitive_count());
-  for (const PendingRay& ray : pending)
-    for (std::uint32_t quadric = triangles; quadric < primitives; ++quadric)
-      if (test(ray.index, ray.filter, quadric)) break;
 }
 
 /// Ray-primitive tests that brute force takes for a ray.
@@ -143,29 +84,17 @@ BatchAnswers brute_force(const Scene& scene, std::span<const Ray> rays, QueryKin
     answers.hits.resize(rays.size());
   else
     answers.occluded.resize(rays.size());
+  const auto structure = brute_force_kind().build(Arguments({"brute-force", {}}, {}), {scene});
+  // Finer than the chunks of tracing.h: a ray takes so long that a hundred are worth sharing.
   const std::size_t cpus = std::max(1u, std::thread::hardware_concurrency());
   const std::size_t group = std::clamp<std::size_t>(rays.size() / (4 * cpus), 1, 128);
   tbb::parallel_for(std::size_t{0}, (rays.size() + group - 1) / group, [&](std::size_t index) {
-    const FlushDenormals mode;
     const std::size_t first = index * group, count = std::min(group, rays.size() - first);
-    if (query == QueryKind::closest) {
-      const auto hits = std::span(answers.hits).subspan(first, count);
-      for_pairs(scene, rays.subspan(first, count),
-                [&](std::size_t ray, const FilterRay& filter, std::uint32_t p) {
-                  NoProbe probe;
-                  test_closest(scene, p, filter, hits[ray], probe);
-                  return false;
-                });
-    } else {
-      const auto occluded = std::span(answers.occluded).subspan(first, count);
-      for_pairs(scene, rays.subspan(first, count),
-                [&](std::size_t ray, const FilterRay& filter, std::uint32_t p) {
-                  NoProbe probe;
-                  if (!test_any(scene, p, filter, probe)) return false;
-                  occluded[ray] = 1;
-                  return true;
-                });
-    }
+    const BatchView view{rays.subspan(first, count), query};
+    if (query == QueryKind::closest)
+      structure->trace_closest(view, std::span(answers.hits).subspan(first, count));
+    else
+      structure->trace_any(view, std::span(answers.occluded).subspan(first, count));
   });
   return answers;
 }
