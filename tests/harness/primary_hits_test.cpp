@@ -67,7 +67,9 @@ struct Expected {
   const char* file;
   std::uint32_t width;
   std::int64_t hits;
-  friend void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.file; }
+  friend std::ostream& operator<<(std::ostream& out, const Expected& expected) {
+    return out << expected.file;
+  }
 };
 
 class PrimaryHits : public testing::TestWithParam<Expected> {};
