@@ -46,9 +46,10 @@ inline constexpr double noisy_spread = 0.05;
 
 /// Races `structure` against `baseline` on the same rays, round by round: in every round both trace the batch
 /// one after the other, and who begins alternates, so that a drift of the machine's speed hurts both alike
-/// and cancels in the ratio of the round. A warm-up round is traced and discarded. Both are given the batch
-/// by `prepare` first, untimed. `baseline` and `structure` may be one object: such an A/A race shows the
-/// floor of the method. A batch without rays gives a result without rounds, its numbers NaN.
+/// and cancels in the ratio of the round. A warm-up is traced and discarded, unless one pass of the structure
+/// takes more than a second: then it is the first round. Both are given the batch by `prepare` first,
+/// untimed. `baseline` and `structure` may be one object: such an A/A race shows the floor of the method. A
+/// batch without rays gives a result without rounds, its numbers NaN.
 RaceResult race(Structure& baseline, Structure& structure, const RayBatch& batch,
                 const RaceSettings& settings);
 
