@@ -9,9 +9,18 @@
 namespace raymeter {
 
 std::uint64_t CellLists::empty_cells() const {
-  std::uint64_t empty = 0;
-  for (std::uint64_t c = 0; c < cells(); ++c) empty += offsets_[c] == offsets_[c + 1];
-  return empty;
+  return sum_of_ranges<std::uint64_t>(cells(), 65536, [this](std::uint64_t begin, std::uint64_t end) {
+    std::uint64_t empty = 0;
+    for (std::uint64_t c = begin; c < end; ++c) empty += offsets_[c] == offsets_[c + 1];
+    return empty;
+  });
+}
+
+void CellLists::sort_lists() {
+  for_ranges(cells(), 4096, [this](std::uint64_t begin, std::uint64_t end) {
+    for (std::uint64_t c = begin; c < end; ++c)
+      std::sort(references_.begin() + offsets_[c], references_.begin() + offsets_[c + 1]);
+  });
 }
 
 std::uint64_t CellLists::counts_to_beginnings() {

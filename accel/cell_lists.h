@@ -1,8 +1,11 @@
 #pragma once
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <span>
 
 #include "accel/memory_meter.h"
+#include "accel/parallel.h"
 
 namespace raymeter {
 
@@ -15,20 +18,37 @@ class CellLists {
       : offsets_(MeteredAllocator<std::uint32_t>(meter)),
         references_(MeteredAllocator<std::uint32_t>(meter)) {}
 
-  /// Fills the lists of `cells` cells. `enumerate(add)` must call add(cell, primitive) for each pair, and is
-  /// run twice; a list holds its primitives in the order of the calls. Takes time linear in cells and pairs.
-  /// Throws Error for 2^32 pairs and more, MemoryLimitExceeded.
+  /// Fills the lists of `cells` cells: enumerate(primitive, add) must call add(cell) for each cell that is to
+  /// hold the primitive, and is run twice for each of `primitives`, on several threads. Every list holds its
+  /// primitives in ascending order. Takes time linear in cells, primitives and pairs (a crowded list that
+  /// several threads filled is sorted besides). Throws Error for 2^32 pairs and more, MemoryLimitExceeded.
   template <class Enumerate>
-  void build(std::uint64_t cells, const Enumerate& enumerate) {
-    // Count what each cell will hold.
-    offsets_.assign(cells + 1, 0);
-    enumerate([this](std::uint64_t cell, std::uint32_t) { ++offsets_[cell]; });
-    // Let each list begin where the one before it ends.
-    references_.resize(counts_to_beginnings());
-    // Fill; every offset moves from its list's beginning to its end, which is the next one's beginning.
-    enumerate(
-        [this](std::uint64_t cell, std::uint32_t primitive) { references_[offsets_[cell]++] = primitive; });
-    ends_to_beginnings();
+  void build(std::uint64_t cells, std::uint64_t primitives, const Enumerate& enumerate) {
+    const bool shared = is_parallel();
+    const auto next = [this, shared](std::uint64_t cell) {
+      std::uint32_t& offset = offsets_[cell];
+      return shared ? std::atomic_ref(offset).fetch_add(1, std::memory_order_relaxed) : offset++;
+    };
+    build_in_two_passes(cells, [&](const auto& each) {
+      for_ranges(primitives, 1024, [&](std::uint64_t begin, std::uint64_t end) {
+        for (std::uint64_t p = begin; p < end; ++p)
+          enumerate(static_cast<std::uint32_t>(p),
+                    [&](std::uint64_t cell) { each(next(cell), static_cast<std::uint32_t>(p)); });
+      });
+    });
+    if (shared) sort_lists();
+  }
+
+  /// The same by groups of cells that share none: enumerate(group, add) calls add(cell, primitive) for each
+  /// pair of the group's cells. A list holds its primitives in the order of the calls.
+  template <class Enumerate>
+  void build_by_groups(std::uint64_t cells, std::uint64_t groups, const Enumerate& enumerate) {
+    build_in_two_passes(cells, [&](const auto& each) {
+      for_ranges(groups, 16, [&](std::uint64_t begin, std::uint64_t end) {
+        for (std::uint64_t group = begin; group < end; ++group)
+          enumerate(group, [&](std::uint64_t cell, std::uint32_t p) { each(offsets_[cell]++, p); });
+      });
+    });
   }
 
   /// Empties the lists of the cells where is_dropped(cell), and gives their memory back.
@@ -56,6 +76,20 @@ class CellLists {
   std::uint64_t reference_bytes() const { return references_.capacity() * sizeof(std::uint32_t); }
 
  private:
+  /// run(each) must add one to the offset of each pair's cell and call each(its old value, primitive).
+  template <class Run>
+  void build_in_two_passes(std::uint64_t cells, const Run& run) {
+    // Count what each cell will hold.
+    offsets_.assign(cells + 1, 0);
+    run([](std::uint32_t, std::uint32_t) {});
+    // Let each list begin where the one before it ends.
+    references_.resize(counts_to_beginnings());
+    // Fill; every offset moves from its list's beginning to its end, which is the next one's beginning.
+    run([this](std::uint32_t place, std::uint32_t primitive) { references_[place] = primitive; });
+    ends_to_beginnings();
+  }
+
+  void sort_lists();
   std::uint64_t counts_to_beginnings();
   void ends_to_beginnings();
 

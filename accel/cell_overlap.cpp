@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "accel/note.h"
+#include "accel/parallel.h"
 
 namespace raymeter {
 
@@ -58,9 +59,13 @@ CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, ChosenReso
   const Resolution asked = chosen.n;
   while (true) {
     const CellGrid grid(space.low, space.high, chosen.n);
-    std::uint64_t work = 0;
-    for (std::uint32_t p = 0; p < scene.primitive_count() && work <= limit; ++p)
-      work += cells_of_box(grid, scene.bounds_of(p), space.margin).cells();
+    const auto work = sum_of_ranges<std::uint64_t>(
+        scene.primitive_count(), 4096, [&](std::uint64_t begin, std::uint64_t end) {
+          std::uint64_t part = 0;
+          for (std::uint64_t p = begin; p < end; ++p)
+            part += cells_of_box(grid, scene.bounds_of(static_cast<std::uint32_t>(p)), space.margin).cells();
+          return part;
+        });
     if (work <= limit) {
       if (chosen.n != asked) {
         add_note(chosen.note, fmt::format("clamped from {} to {} (limit {} cells in all primitives' boxes)",

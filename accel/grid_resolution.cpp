@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "accel/note.h"
+#include "accel/parallel.h"
 #include "scenes/base/error.h"
 
 namespace raymeter {
@@ -144,8 +145,12 @@ ShapeSizes shape_sizes(const Scene& scene) {
   ShapeSizes shapes;
   shapes.count = scene.primitive_count();
   shapes.extent = scene.bounds().extent();
-  Vec3d sum;
-  for (std::uint32_t p = 0; p < shapes.count; ++p) sum = sum + scene.bounds_of(p).extent();
+  const auto sum = sum_of_ranges<Vec3d>(shapes.count, 4096, [&](std::uint64_t begin, std::uint64_t end) {
+    Vec3d part;
+    for (std::uint64_t p = begin; p < end; ++p)
+      part = part + scene.bounds_of(static_cast<std::uint32_t>(p)).extent();
+    return part;
+  });
   if (shapes.count > 0) shapes.mean_extent = (1 / double(shapes.count)) * sum;
   return shapes;
 }

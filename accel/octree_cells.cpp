@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
+#include <utility>
 
 #include "accel/cell_overlap.h"
+#include "accel/parallel.h"
 
 namespace raymeter {
 namespace {
@@ -16,10 +19,19 @@ struct Level {
   explicit Level(MemoryMeter& meter)
       : corners(MeteredAllocator<CellIndex>(meter)), references(MeteredAllocator<std::uint32_t>(meter)) {}
 
+  int depth = 0;
   std::size_t first_node = 0;
   MeteredVector<CellIndex> corners;
   MeteredVector<std::uint32_t> references;
 };
+
+/// Some references of a node that may be split: what one thread works on at a time.
+struct Piece {
+  std::uint32_t node;                       // of the level
+  std::uint32_t begin, end;                 // in the level's references
+  std::array<std::uint32_t, 8> children{};  // how many meet each child; then where in the next level they go
+};
+constexpr std::uint32_t piece_size = 4096;
 
 class OctreeBuilder {
  public:
@@ -31,6 +43,7 @@ class OctreeBuilder {
         meter_(meter),
         bounds_(MeteredAllocator<Bounds>(meter)),
         children_of_(MeteredAllocator<std::uint8_t>(meter)),
+        pieces_(MeteredAllocator<Piece>(meter)),
         tree_(meter) {
     tree_.space = OctreeSpace(scene.bounds(), depth);
   }
@@ -39,27 +52,21 @@ class OctreeBuilder {
     // The root holds every primitive.
     const auto primitives = static_cast<std::uint32_t>(scene_.primitive_count());
     Level level(meter_);
-    bounds_.reserve(primitives);
-    level.references.reserve(primitives);
-    for (std::uint32_t primitive = 0; primitive < primitives; ++primitive) {
-      bounds_.push_back(scene_.bounds_of(primitive));
-      level.references.push_back(primitive);
-    }
+    bounds_.resize(primitives);
+    level.references.resize(primitives);
+    for_ranges(primitives, 4096, [&](std::uint64_t begin, std::uint64_t end) {
+      for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
+        bounds_[p] = scene_.bounds_of(p);
+        level.references[p] = p;
+      }
+    });
     level.corners.push_back({0, 0, 0});
     tree_.nodes.push_back({0, primitives});
     total_references_ = primitives;
 
-    // Each node of a level is split or becomes a leaf; the children are the next level.
-    for (int depth = 0; !level.corners.empty(); ++depth) {
-      tree_.depth = depth;
-      Level next(meter_);
-      next.first_node = tree_.nodes.size();
-      for (std::size_t i = 0; i < level.corners.size(); ++i) {
-        const std::size_t node = level.first_node + i;
-        if (!split(node, level, level.corners[i], depth, next)) settle(node, level);
-      }
-      level = std::move(next);
-    }
+    // Each node of a level is split or becomes a leaf; the children are the next level. What costs time is
+    // done by all threads; what is decided, node by node, so that the tree does not depend on them.
+    for (; !level.corners.empty(); level = next_level(level)) tree_.depth = level.depth;
 
     tree_.nodes.shrink_to_fit();
     tree_.references.shrink_to_fit();
@@ -71,59 +78,105 @@ class OctreeBuilder {
   }
 
  private:
-  /// Splits a node if that is wanted, useful and allowed.
-  bool split(std::size_t node, const Level& level, const CellIndex& corner, int depth, Level& next) {
-    const auto [first, count] = tree_.nodes[node];
-    if (count <= leaf_ || depth == maximum_depth_) return false;
+  Level next_level(const Level& level) {
+    find_children(level);
+    Level next(meter_);
+    next.depth = level.depth + 1;
+    next.first_node = tree_.nodes.size();
+    std::size_t piece = 0, references = 0;
+    for (std::uint32_t node = 0; node < level.corners.size(); ++node) {
+      const std::size_t first_piece = piece;
+      while (piece < pieces_.size() && pieces_[piece].node == node) ++piece;
+      const std::span<Piece> pieces(pieces_.data() + first_piece, piece - first_piece);
+      if (!split(level, node, pieces, next, references)) {
+        for (Piece& of_leaf : pieces) of_leaf.end = of_leaf.begin;  // nothing of it goes to the next level
+        settle(level, node);
+      }
+    }
+    next.references.resize(references);
+    hand_down(level, next);
+    return next;
+  }
 
-    // Keeps the node whole where there may be no room for its children: each primitive may meet several.
-    if (total_references_ + count > limit_ || tree_.nodes.size() + 8 > limit_) {
+  std::int32_t child_size(const Level& level) const { return tree_.space.cells >> (level.depth + 1); }
+
+  /// For each node of the level that could be split, and each of its primitives: the children that it meets.
+  void find_children(const Level& level) {
+    pieces_.clear();
+    if (level.depth == maximum_depth_) return;
+    for (std::uint32_t node = 0; node < level.corners.size(); ++node) {
+      const auto [first, count] = tree_.nodes[level.first_node + node];
+      // Where there may be no room for the children, as each primitive may meet several: see split.
+      if (count <= leaf_ || total_references_ + count > limit_) continue;
+      for (std::uint32_t begin = 0; begin < count; begin += piece_size)
+        pieces_.push_back({node, first + begin, first + std::min(count, begin + piece_size)});
+    }
+    children_of_.resize(level.references.size());
+    for_ranges(pieces_.size(), 1, [&](std::uint64_t begin, std::uint64_t end) {
+      for (std::uint64_t i = begin; i < end; ++i) {
+        Piece& piece = pieces_[i];
+        for (std::uint32_t r = piece.begin; r < piece.end; ++r) {
+          children_of_[r] = children_met(level.references[r], level.corners[piece.node], child_size(level));
+          for (unsigned child = 0; child < 8; ++child) piece.children[child] += children_of_[r] >> child & 1u;
+        }
+      }
+    });
+  }
+
+  /// Splits a node if that is wanted, useful and allowed. `references` is how many the next level has so far.
+  bool split(const Level& level, std::uint32_t node, std::span<Piece> pieces, Level& next,
+             std::size_t& references) {
+    const std::uint32_t count = tree_.nodes[level.first_node + node].count;
+    if (count <= leaf_ || level.depth == maximum_depth_) return false;
+
+    // Keeps the node whole where there may be no room for its children, where splitting separates nothing, or
+    // where it would cost more than is allowed.
+    if (pieces.empty() || total_references_ + count > limit_ || tree_.nodes.size() + 8 > limit_) {
       ++cells_kept_whole_;
       return false;
     }
-
-    // Finds for each primitive the children that it meets.
-    const std::int32_t half = tree_.space.cells >> (depth + 1);
     std::array<std::uint32_t, 8> counts{};
-    children_of_.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      children_of_[i] = children_met(level.references[first + i], corner, half);
-      for (unsigned child = 0; child < 8; ++child) counts[child] += children_of_[i] >> child & 1u;
-    }
-
-    // Keeps the node whole where splitting separates nothing, or would cost more than is allowed.
+    for (const Piece& piece : pieces)
+      for (std::size_t child = 0; child < 8; ++child) counts[child] += piece.children[child];
     if (std::ranges::all_of(counts, [&](std::uint32_t n) { return n == count; })) return false;
-    std::uint64_t references = total_references_ - count;
-    for (const std::uint32_t n : counts) references += n;
-    if (references > limit_) {
+    std::uint64_t total = total_references_ - count;
+    for (const std::uint32_t n : counts) total += n;
+    if (total > limit_) {
       ++cells_kept_whole_;
       return false;
     }
-    total_references_ = references;
+    total_references_ = total;
 
-    // Adds the children to the next level.
-    tree_.nodes[node] = {static_cast<std::uint32_t>(tree_.nodes.size()), OctreeNode::inner};
+    // Adds the children to the next level, and says where the pieces' references go.
+    tree_.nodes[level.first_node + node] = {static_cast<std::uint32_t>(tree_.nodes.size()),
+                                            OctreeNode::inner};
     ++tree_.inner_nodes;
-    std::array<std::size_t, 8> end{};
-    std::size_t offset = next.references.size();
     for (unsigned child = 0; child < 8; ++child) {
-      tree_.nodes.push_back({static_cast<std::uint32_t>(offset), counts[child]});
-      next.corners.push_back(child_corner(corner, child, half));
-      end[child] = offset;
-      offset += counts[child];
+      tree_.nodes.push_back({static_cast<std::uint32_t>(references), counts[child]});
+      next.corners.push_back(child_corner(level.corners[node], child, child_size(level)));
+      for (Piece& piece : pieces)
+        references += std::exchange(piece.children[child], static_cast<std::uint32_t>(references));
     }
-    next.references.resize(offset);
-    for (std::uint32_t i = 0; i < count; ++i)
-      for (unsigned child = 0; child < 8; ++child)
-        if (children_of_[i] >> child & 1u) next.references[end[child]++] = level.references[first + i];
     return true;
   }
 
+  /// Copies the references of the nodes that were split to their children.
+  void hand_down(const Level& level, Level& next) {
+    for_ranges(pieces_.size(), 1, [&](std::uint64_t begin, std::uint64_t end) {
+      for (std::uint64_t i = begin; i < end; ++i) {
+        Piece& piece = pieces_[i];
+        for (std::uint32_t r = piece.begin; r < piece.end; ++r)
+          for (unsigned child = 0; child < 8; ++child)
+            if (children_of_[r] >> child & 1u) next.references[piece.children[child]++] = level.references[r];
+      }
+    });
+  }
+
   /// Makes a node a leaf.
-  void settle(std::size_t node, const Level& level) {
-    const auto [first, count] = tree_.nodes[node];
-    tree_.nodes[node].first = static_cast<std::uint32_t>(tree_.references.size());
+  void settle(const Level& level, std::uint32_t node) {
+    auto& [first, count] = tree_.nodes[level.first_node + node];
     const auto begin = level.references.begin() + first;
+    first = static_cast<std::uint32_t>(tree_.references.size());
     tree_.references.insert(tree_.references.end(), begin, begin + count);
     ++tree_.leaves;
     tree_.empty_leaves += count == 0;
@@ -174,7 +227,8 @@ class OctreeBuilder {
   std::uint64_t limit_;
   MemoryMeter& meter_;
   MeteredVector<Bounds> bounds_;
-  MeteredVector<std::uint8_t> children_of_;  // of the node being split: for each reference a bit per child
+  MeteredVector<std::uint8_t> children_of_;  // for each reference of the level's pieces a bit per child
+  MeteredVector<Piece> pieces_;              // of the level, node by node
   std::uint64_t total_references_ = 0, cells_kept_whole_ = 0;
   OctreeCells tree_;
 };

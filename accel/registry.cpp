@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <stdexcept>
 
@@ -32,8 +34,14 @@ Arguments Registry::arguments(const Spec& spec) const {
 
 std::unique_ptr<Structure> Registry::build(const Spec& spec, const BuildInput& input) const {
   const StructureKind& kind = find(spec.name);
-  const FlushDenormals mode;
-  return kind.build(Arguments(spec, kind.parameters), input);
+  const Arguments arguments(spec, kind.parameters);
+  // As many threads as asked for, even where there are fewer CPUs.
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, input.threads);
+  tbb::task_arena arena(static_cast<int>(input.threads));
+  return arena.execute([&] {
+    const FlushDenormals mode;
+    return kind.build(arguments, input);
+  });
 }
 
 }  // namespace raymeter

@@ -15,8 +15,8 @@ namespace raymeter {
 
 /// What a structure is built from.
 struct BuildInput {
-  const Scene& scene;  ///< outlives the structure
-  unsigned threads = 1;
+  const Scene& scene;    ///< outlives the structure
+  unsigned threads = 1;  ///< of the task arena (TBB) in which it is built; at least 1
   std::uint64_t memory_limit =
       std::numeric_limits<std::uint64_t>::max();  ///< bytes; exceeding it throws MemoryLimitExceeded
 };
@@ -42,8 +42,8 @@ class Registry {
 
   /// The checked arguments of a spec; throws Error.
   Arguments arguments(const Spec& spec) const;
-  /// Builds on the calling thread, with denormals flushed. Throws Error, MemoryLimitExceeded or what the
-  /// structure throws.
+  /// Builds in a task arena of input.threads, with denormals flushed. Throws Error, MemoryLimitExceeded or
+  /// what the structure throws.
   std::unique_ptr<Structure> build(const Spec& spec, const BuildInput& input) const;
 
  private:

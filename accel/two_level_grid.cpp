@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "accel/cell_lists.h"
 #include "accel/cell_overlap.h"
@@ -11,6 +12,7 @@
 #include "accel/grid_resolution.h"
 #include "accel/grid_walk.h"
 #include "accel/note.h"
+#include "accel/parallel.h"
 #include "accel/per_ray_structure.h"
 #include "scenes/base/error.h"
 
@@ -49,21 +51,18 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
     // Register every primitive in the cells of the top level.
     grid_ = registrable_grid(scene, space_, chosen);
     stats_.note = chosen.note;
-    top_lists_.build(cell_count(chosen.n), [&](auto add) {
-      for (std::uint32_t p = 0; p < scene.primitive_count(); ++p)
-        for_each_cell_of(scene, p, grid_, space_.margin, options.fit, [&](std::uint64_t c) { add(c, p); });
+    top_lists_.build(cell_count(chosen.n), scene.primitive_count(), [&](std::uint32_t p, const auto& add) {
+      for_each_cell_of(scene, p, grid_, space_.margin, options.fit, add);
     });
 
     // Give each crowded cell a grid, and register the cell's primitives again in that.
     const std::uint64_t leaf_cells = lay_out_subgrids(options, limits);
-    leaf_lists_.build(leaf_cells, [&](auto add) {
-      for (std::uint64_t top = 0; top < top_lists_.cells(); ++top) {
-        if (subgrid_of_[top] == no_subgrid) continue;
-        const SubGrid& sub = subgrids_[subgrid_of_[top]];
-        for (const std::uint32_t p : top_lists_[top])
-          for_each_cell_of(scene, p, sub.grid, space_.margin, options.fit,
-                           [&](std::uint64_t c) { add(sub.first_cell + c, p); });
-      }
+    leaf_lists_.build_by_groups(leaf_cells, top_lists_.cells(), [&](std::uint64_t top, const auto& add) {
+      if (subgrid_of_[top] == no_subgrid) return;
+      const SubGrid& sub = subgrids_[subgrid_of_[top]];
+      for (const std::uint32_t p : top_lists_[top])
+        for_each_cell_of(scene, p, sub.grid, space_.margin, options.fit,
+                         [&](std::uint64_t c) { add(sub.first_cell + c, p); });
     });
     top_lists_.drop([this](std::uint64_t top) { return subgrid_of_[top] != no_subgrid; });
 
@@ -118,6 +117,14 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
         });
   }
 
+  /// What the sub-grids have together.
+  struct Layout {
+    std::uint64_t cells = 0, clamped = 0, work = 0;
+    friend Layout operator+(const Layout& a, const Layout& b) {
+      return {a.cells + b.cells, a.clamped + b.clamped, a.work + b.work};
+    }
+  };
+
   /// Fills subgrid_of_ and subgrids_; gives the number of their cells.
   std::uint64_t lay_out_subgrids(const Options& options, const ResolutionLimits& limits) {
     subgrid_of_.assign(top_lists_.cells(), no_subgrid);
@@ -131,26 +138,34 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
     const std::uint64_t work_limit = registration_limit(top_lists_.references());
     ResolutionRule leaf = options.leaf;
     while (true) {
-      std::uint64_t cells = 0, clamped = 0, work = 0;
-      for (std::uint64_t c = 0; c < top_lists_.cells(); ++c) {
-        if (subgrid_of_[c] == no_subgrid) continue;
-        const CellBox box = box_of(c);
-        const auto chosen = choose_resolution(leaf, sizes_in(box, top_lists_[c]), limits);
-        clamped += chosen.clamped;
-        const CellGrid grid(box.low, box.high, chosen.n);
-        subgrids_[subgrid_of_[c]] = {grid, cells};
-        cells += cell_count(chosen.n);
-        for (const std::uint32_t p : top_lists_[c])
-          work += cells_of_box(grid, scene().bounds_of(p), space_.margin).cells();
-      }
-      if (cells <= limits.cells && work <= work_limit) {
+      // Each sub-grid by itself; `first_cell` holds how many cells it has, until all are known.
+      const auto total =
+          sum_of_ranges<Layout>(top_lists_.cells(), 1024, [&](std::uint64_t begin, std::uint64_t end) {
+            Layout part;
+            for (std::uint64_t c = begin; c < end; ++c) {
+              if (subgrid_of_[c] == no_subgrid) continue;
+              const CellBox box = box_of(c);
+              const auto chosen = choose_resolution(leaf, sizes_in(box, top_lists_[c]), limits);
+              const CellGrid grid(box.low, box.high, chosen.n);
+              subgrids_[subgrid_of_[c]] = {grid, cell_count(chosen.n)};
+              part.cells += cell_count(chosen.n);
+              part.clamped += chosen.clamped;
+              for (const std::uint32_t p : top_lists_[c])
+                part.work += cells_of_box(grid, scene().bounds_of(p), space_.margin).cells();
+            }
+            return part;
+          });
+      if (total.cells <= limits.cells && total.work <= work_limit) {
+        std::uint64_t first_cell = 0;
+        for (SubGrid& sub : subgrids_)
+          sub.first_cell = std::exchange(first_cell, first_cell + sub.first_cell);
         if (leaf.value != options.leaf.value)
           add_note(
               stats_.note,
               fmt::format("leaf-density clamped from {} to {} (limit {} cells, {} in all primitives' boxes)",
                           options.leaf.value, leaf.value, limits.cells, work_limit));
-        if (clamped) add_note(stats_.note, fmt::format("{} sub-grids clamped", clamped));
-        return cells;
+        if (total.clamped) add_note(stats_.note, fmt::format("{} sub-grids clamped", total.clamped));
+        return total.cells;
       }
       leaf.value /= 2;
     }

@@ -25,9 +25,8 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
     const auto limits = ResolutionLimits::within(input.memory_limit, 4 * space_.margin);
     auto chosen = choose_resolution(options.rule, shape_sizes(scene), limits);
     grid_ = registrable_grid(scene, space_, chosen);
-    lists_.build(cell_count(chosen.n), [&](auto add) {
-      for (std::uint32_t p = 0; p < scene.primitive_count(); ++p)
-        for_each_cell_of(scene, p, grid_, space_.margin, options.fit, [&](std::uint64_t c) { add(c, p); });
+    lists_.build(cell_count(chosen.n), scene.primitive_count(), [&](std::uint32_t p, const auto& add) {
+      for_each_cell_of(scene, p, grid_, space_.margin, options.fit, add);
     });
 
     stats_.resolution = chosen.n;
