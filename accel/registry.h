@@ -29,6 +29,9 @@ struct StructureKind {
   Answers answers = Answers::exact;
   std::vector<Parameter> parameters = {};
   std::function<std::unique_ptr<Structure>(const Arguments&, const BuildInput&)> build;
+  /// Faults of this kind are shown, but are no failure of a comparison: for a library like Embree, whose
+  /// limits are known and nobody's here to mend.
+  bool tolerated = false;
 };
 
 /// All structures that can be named. Filled explicitly, by register_accel, register_baselines and users.

@@ -429,12 +429,13 @@ std::unique_ptr<Structure> build(const Arguments& arguments, const BuildInput& i
 }  // namespace
 
 StructureKind embree_kind() {
-  return {"embree",
-          "Embree's own BVH and traversal: the baseline",
-          "Wald, Woop, Benthin, Johnson, Ernst 2014",
-          Answers::within_bound,
-          parameters(),
-          build};
+  return {.name = "embree",
+          .summary = "Embree's own BVH and traversal: the baseline",
+          .source = "Wald, Woop, Benthin, Johnson, Ernst 2014",
+          .answers = Answers::within_bound,
+          .parameters = parameters(),
+          .build = build,
+          .tolerated = true};
 }
 
 std::string embree_version() {

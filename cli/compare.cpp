@@ -9,9 +9,8 @@
 
 #include "harness/comparison.h"
 #include "harness/environment.h"
-#include "harness/ray_kinds.h"
+#include "reports/comparison_recorder.h"
 #include "reports/comparison_table.h"
-#include "reports/progress_bar.h"
 #include "reports/record_files.h"
 #include "scenes/base/error.h"
 #include "scenes/open_scene.h"
@@ -59,18 +58,17 @@ RayOrder parse_order(const std::string& text) {
   return text == "scanline" ? RayOrder::scanline : text == "shuffled" ? RayOrder::shuffled : RayOrder::tiled;
 }
 
-std::vector<Spec> parse_all(const std::vector<std::string>& texts, const std::vector<std::string>& defaults) {
+std::vector<Spec> parse_all(const std::vector<std::string>& texts) {
   std::vector<Spec> specs;
-  for (const std::string& text : texts.empty() ? defaults : texts)
+  for (const std::string& text : texts)
     for (Spec& spec : parse_specs(text)) specs.push_back(std::move(spec));
   return specs;
 }
 
 ComparisonSettings settings_of(const CompareOptions& options) {
   ComparisonSettings settings;
-  settings.structures = parse_all(
-      options.structures, {"grid", "tunable-grid", "octree", "two-level-grid", "embree", "counted-bvh"});
-  settings.ray_kinds = parse_all(options.rays, {"primary", "shadow", "reflection", "diffuse"});
+  settings.structures = parse_all(options.structures);
+  settings.ray_kinds = parse_all(options.rays);
   settings.baseline = parse_spec(options.baseline);
   settings.batches.order = parse_order(options.order);
   settings.batches.size = parse_size(options.size);
@@ -84,65 +82,10 @@ ComparisonSettings settings_of(const CompareOptions& options) {
   return settings;
 }
 
-/// Every name and parameter is checked before the first scene is opened.
-void check(const ComparisonSettings& settings, const Registry& registry) {
-  for (const Spec& spec : settings.structures) registry.arguments(spec);
-  registry.arguments(settings.baseline);
-  for (const Spec& kind : settings.ray_kinds) ray_arguments(kind);
-}
-
-/// Keeps the records of a scene for its table, writes them to the log, and knows whether all is right.
-class Recorder : public ComparisonObserver {
- public:
-  Recorder(const Registry& registry, RecordLog* log) : registry_(registry), log_(log) {}
-
-  const Record* finished(std::string_view key) override {
-    if (!log_) return nullptr;
-    for (const Record& record : log_->records())
-      if (record.key == key) return &record;
-    return nullptr;
-  }
-
-  void record(const Record& record) override {
-    if (log_ && !finished(record.key)) log_->append(record);
-    const bool exact = registry_.find(record.structure).answers == Answers::exact;
-    if (record.status == "inconsistent" || (exact && record.status != "ok")) all_right_ = false;
-    if (exact && record.wrong.value_or(0) + record.unexplained.value_or(0) + record.not_given.value_or(0) > 0)
-      all_right_ = false;
-    records_.push_back(record);
-  }
-
-  void progress(std::size_t done, std::size_t total, std::string_view doing) override {
-    bar_.show(done, total, doing);
-  }
-
-  void reference_refuted(std::string_view batch, std::size_t rays) override {
-    all_right_ = false;
-    bar_.clear();
-    fmt::print(stderr,
-               "raymeter: {}: brute force refutes the reference hits on {} rays; please report this\n", batch,
-               rays);
-  }
-
-  /// The records of the scene that was compared last; the next scene begins anew.
-  std::vector<Record> take_records() {
-    bar_.clear();
-    return std::exchange(records_, {});
-  }
-  bool all_right() const { return all_right_; }
-
- private:
-  const Registry& registry_;
-  RecordLog* log_;
-  ProgressBar bar_;
-  std::vector<Record> records_;
-  bool all_right_ = true;
-};
-
 }  // namespace
 
 int run_compare(const CompareOptions& options, const Registry& registry) {
-  ComparisonSettings settings = settings_of(options);
+  const ComparisonSettings settings = settings_of(options);
   check(settings, registry);
 
   const std::filesystem::path folder = options.out;
@@ -155,7 +98,7 @@ int run_compare(const CompareOptions& options, const Registry& registry) {
     write_environment(folder / "environment.json", environment_id(), environment());
   }
 
-  Recorder recorder(registry, log ? &*log : nullptr);
+  ComparisonRecorder recorder(registry, log ? &*log : nullptr);
   bool all_opened = true;
   for (const std::string& name : options.scenes) {
     try {

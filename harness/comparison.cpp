@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -15,6 +12,7 @@
 #include "harness/environment.h"
 #include "harness/grading.h"
 #include "harness/ray_kinds.h"
+#include "harness/timed_build.h"
 #include "harness/truth.h"
 #include "scenes/base/error.h"
 #include "scenes/base/hash.h"
@@ -41,58 +39,9 @@ std::string hex(std::uint64_t hash) {
   return fmt::format("{:016x}", hash);
 }
 
-/// A structure as built, or why it could not be.
-struct Built {
-  std::unique_ptr<Structure> structure;
-  StructureStats stats;
-  double seconds = 0;
-  std::string failure;
-};
-
 /// For what is not timed.
 unsigned all_cpus() {
   return std::max(1u, std::thread::hardware_concurrency());
-}
-
-double process_cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// Build time is CPU time of the whole process at one thread (a builder may hand work to a thread of its
-/// own), wall time at more.
-Built build(const Registry& registry, const Spec& spec, const BuildInput& input) {
-  Built built;
-  const auto wall = std::chrono::steady_clock::now();
-  const double cpu = process_cpu_seconds();
-  try {
-    built.structure = registry.build(spec, input);
-  } catch (const std::exception& error) {
-    built.failure = error.what();
-    return built;
-  }
-  built.seconds = input.threads == 1
-                      ? process_cpu_seconds() - cpu
-                      : std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
-  built.stats = built.structure->stats();
-  return built;
-}
-
-/// Builds up to five times, while all builds together take less than 0.2 s: the median says more of a build
-/// of milliseconds than one of them, and what is paid once in a process falls out of it.
-Built build_timed(const Registry& registry, const Spec& spec, const BuildInput& input) {
-  Built built;
-  std::vector<double> seconds;
-  double total = 0;
-  do {
-    built = {};  // never two of them at once
-    built = build(registry, spec, input);
-    seconds.push_back(built.seconds);
-    total += built.seconds;
-  } while (built.structure && seconds.size() < 5 && total < 0.2);
-  built.seconds = median(seconds);
-  return built;
 }
 
 /// A batch with what is known to be true of it.
@@ -100,19 +49,6 @@ struct JudgedBatch {
   RayBatch rays;
   Truth truth;
 };
-
-/// The exact structure whose answers the truth starts from, and whose primary hits the secondary rays start
-/// from: the quickest one that can be built here. Its answers are proved on a sample of every batch.
-std::unique_ptr<Structure> build_reference(const Registry& registry, const BuildInput& input) {
-  std::string failures;
-  for (const char* name : {"counted-bvh", "grid", "brute-force"}) {
-    Built built = build(registry, Spec{name, {}}, input);
-    if (built.structure) return std::move(built.structure);
-    failures += fmt::format("; {}: {}", name, built.failure);
-  }
-  throw Error(fmt::format("{}: no structure could be built to take reference hits from{}", input.scene.name(),
-                          failures));
-}
 
 Truth reference_truth(const Scene& scene, Structure& reference, const RayBatch& batch,
                       ComparisonObserver& observer) {
@@ -152,17 +88,31 @@ std::vector<JudgedBatch> make_batches(const Scene& scene, const Registry& regist
 struct Context {
   const Scene& scene;
   const ComparisonSettings& settings;
-  std::string baseline;  ///< canonical
-  std::string build;     ///< id
+  std::string baseline;        ///< canonical
+  std::string baseline_build;  ///< id
 };
 
-std::string key_of(const Context& context, const RayBatch& batch, const Arguments& arguments) {
+/// Identifies the code of a structure: this library, and the plug-in or program that it comes from, if it
+/// does.
+std::string build_id_of(const StructureKind& kind) {
+  // The builder's function; or the type of the function object, which lies in the file where it was compiled.
+  using Function = std::unique_ptr<Structure> (*)(const Arguments&, const BuildInput&);
+  const Function* function = kind.build.target<Function>();
+  const std::uint64_t own = build_id();
+  const std::uint64_t id = code_id(function ? reinterpret_cast<const void*>(*function)
+                                            : static_cast<const void*>(&kind.build.target_type()));
+  return hex(own) + (id == own ? "" : "+" + hex(id));
+}
+
+std::string key_of(const Context& context, const RayBatch& batch, const Arguments& arguments,
+                   const std::string& build) {
   const RaceSettings& race = context.settings.race;
   Hasher hasher;
   hasher.value(context.scene.hash());
   hasher.text(context.scene.name());
   hasher.value(batch.hash);
-  for (const std::string& text : {batch.name, arguments.canonical(), context.baseline, context.build})
+  for (const std::string& text :
+       {batch.name, arguments.canonical(), build, context.baseline, context.baseline_build})
     hasher.text(text);
   hasher.text(environment_id());
   hasher.value(race.rounds);
@@ -175,10 +125,11 @@ std::string key_of(const Context& context, const RayBatch& batch, const Argument
 }
 
 /// The part of a record that is known before anything was built.
-Record blank_record(const Context& context, const JudgedBatch& batch, const Arguments& arguments) {
+Record blank_record(const Context& context, const JudgedBatch& batch, const Arguments& arguments,
+                    const std::string& build) {
   constexpr std::string_view order_names[] = {"tiled", "scanline", "shuffled"};
   Record r;
-  r.key = key_of(context, batch.rays, arguments);
+  r.key = key_of(context, batch.rays, arguments, build);
   r.scene = context.scene.name();
   r.scene_hash = hex(context.scene.hash());
   r.primitives = context.scene.primitive_count();
@@ -192,7 +143,7 @@ Record blank_record(const Context& context, const JudgedBatch& batch, const Argu
   r.ray_hash = hex(batch.rays.hash);
   r.threads = context.settings.race.threads;
   r.seed = context.settings.batches.seed;
-  r.build_id = context.build;
+  r.build_id = build;
   r.environment_id = environment_id();
   return r;
 }
@@ -299,18 +250,48 @@ Record measure(const Context& context, Structure* baseline, const Built& built, 
   return r;
 }
 
+std::vector<Spec> structures_of(const ComparisonSettings& settings, const Registry& registry) {
+  std::vector<Spec> specs = settings.structures;
+  if (specs.empty())
+    for (const StructureKind& kind : registry.kinds())
+      if (kind.name != "brute-force") specs.push_back({kind.name, {}});
+  return specs;
+}
+
+std::vector<Arguments> ray_kinds_of(const ComparisonSettings& settings) {
+  std::vector<Spec> specs = settings.ray_kinds;
+  if (specs.empty()) specs = {{"primary", {}}, {"shadow", {}}, {"reflection", {}}, {"diffuse", {}}};
+  std::vector<Arguments> kinds;
+  for (const Spec& spec : specs) kinds.push_back(ray_arguments(spec));
+  return kinds;
+}
+
 }  // namespace
+
+void check(const ComparisonSettings& settings, const Registry& registry) {
+  for (const Spec& spec : settings.structures) registry.arguments(spec);
+  registry.arguments(settings.baseline);
+  for (const Spec& kind : settings.ray_kinds) ray_arguments(kind);
+}
+
+bool is_fault(const Record& record, const StructureKind& kind) {
+  if (record.status == "inconsistent") return true;
+  if (kind.tolerated) return false;
+  const auto some = [](const Record::Count& count) { return count.value_or(0) > 0; };
+  return record.status != "ok" || some(record.wrong) || some(record.unexplained) ||
+         (kind.answers == Answers::exact && some(record.not_given));
+}
 
 void compare_structures(const Scene& scene, const Registry& registry, const ComparisonSettings& settings,
                         ComparisonObserver& observer) {
-  const Context context{scene, settings, registry.arguments(settings.baseline).canonical(), hex(build_id())};
-  std::vector<Spec> specs = settings.structures;
+  const Context context{scene, settings, registry.arguments(settings.baseline).canonical(),
+                        build_id_of(registry.find(settings.baseline.name))};
+  std::vector<Spec> specs = structures_of(settings, registry);
   const auto is_baseline = [&](const Spec& spec) {
     return registry.arguments(spec).canonical() == context.baseline;
   };
   if (std::ranges::none_of(specs, is_baseline)) specs.push_back(settings.baseline);
-  std::vector<Arguments> kinds;
-  for (const Spec& kind : settings.ray_kinds) kinds.push_back(ray_arguments(kind));
+  const std::vector<Arguments> kinds = ray_kinds_of(settings);
 
   observer.progress(0, 1, fmt::format("{}: rays and their true hits", scene.name()));
   std::vector<JudgedBatch> batches = make_batches(scene, registry, settings, kinds, observer);
@@ -321,21 +302,22 @@ void compare_structures(const Scene& scene, const Registry& registry, const Comp
   std::optional<Built> baseline;  // built when first needed: a resumed run may need nothing at all
   for (const Spec& spec : specs) {
     const Arguments arguments = registry.arguments(spec);
-    const Answers policy = registry.find(spec.name).answers;
+    const StructureKind& kind = registry.find(spec.name);
+    const std::string build = build_id_of(kind);
     std::optional<Built> built;  // only the baseline and this one are alive during its races
     for (JudgedBatch& batch : batches) {
-      Record blank = blank_record(context, batch, arguments);
+      Record blank = blank_record(context, batch, arguments, build);
       observer.progress(done++, total,
                         fmt::format("{} {} {}", scene.name(), arguments.brief(), batch.rays.name));
       if (const Record* earlier = observer.finished(blank.key)) {
         observer.record(*earlier);
         continue;
       }
-      if (!baseline) baseline = build(registry, settings.baseline, input);
+      if (!baseline) baseline = build_once(registry, settings.baseline, input);
       if (!built) built = build_timed(registry, spec, input);
       if (built->structure) {
-        Record record =
-            measure(context, baseline->structure.get(), *built, policy, batch, std::move(blank), observer);
+        Record record = measure(context, baseline->structure.get(), *built, kind.answers, batch,
+                                std::move(blank), observer);
         if (!baseline->structure)
           add_note(record.note, "no ratio, the baseline failed: " + baseline->failure);
         observer.record(record);

@@ -16,13 +16,21 @@ namespace raymeter {
 
 /// What to compare on each scene.
 struct ComparisonSettings {
-  std::vector<Spec> structures;
-  std::vector<Spec> ray_kinds;
-  Spec baseline;
+  std::vector<Spec> structures;  ///< none: every kind of the registry but brute-force, at its defaults
+  std::vector<Spec> ray_kinds;   ///< none: primary, shadow, reflection, diffuse
+  Spec baseline{"embree", {}};
   BatchSettings batches;
   RaceSettings race;
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  ///< bytes, for each structure
 };
+
+/// Throws Error when a structure, the baseline or a ray kind does not exist or has other parameters.
+void check(const ComparisonSettings& settings, const Registry& registry);
+
+/// Whether a record shows its structure to be at fault: it could not be built, its counted pass differs from
+/// the timed one, or an answer is wrong, unexplained or, of an exact structure, not given. Of a `tolerated`
+/// kind only the second is.
+bool is_fault(const Record& record, const StructureKind& kind);
 
 /// Is told of everything that happens during a comparison.
 class ComparisonObserver {
@@ -41,8 +49,8 @@ class ComparisonObserver {
 /// Compares the structures on one scene, on identical batches, and hands a record for each structure and
 /// batch to the observer, as soon as it is known. The baseline gets rows of its own (raced against itself:
 /// the floor of the method), whether it is among the structures or not. A structure that can't be built
-/// becomes records that say why; the others go on. Throws Error for specs that don't exist, before anything
-/// is measured.
+/// becomes records that say why; the others go on. Throws Error as `check` does, before anything is
+/// measured.
 void compare_structures(const Scene& scene, const Registry& registry, const ComparisonSettings& settings,
                         ComparisonObserver& observer);
 

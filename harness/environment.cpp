@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 #include <sys/utsname.h>
 #include <tbb/version.h>
 #include <unistd.h>
@@ -10,6 +11,8 @@
 #include <boost/version.hpp>
 #include <ctime>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
@@ -132,20 +135,29 @@ std::string environment_id() {
   return id;
 }
 
+std::uint64_t code_id(const void* address) {
+  Dl_info object{};
+  void* map = nullptr;
+  if (dladdr1(address, &object, &map, RTLD_DL_LINKMAP) == 0 || !map) return 0;
+  // The running program has no name there, and its argv[0] need not be a path.
+  const std::string name = static_cast<const link_map*>(map)->l_name;
+  const std::string path = name.empty() ? "/proc/self/exe" : name;
+
+  static std::mutex mutex;
+  static std::map<std::string, std::uint64_t> known;  // hashed when first asked for
+  const std::lock_guard lock(mutex);
+  if (const auto found = known.find(path); found != known.end()) return found->second;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return 0;
+  Hasher hasher;
+  std::vector<char> block(std::size_t{1} << 20u);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
+    hasher.bytes(block.data(), static_cast<std::size_t>(file.gcount()));
+  return known[path] = hasher.digest();
+}
+
 std::uint64_t build_id() {
-  static const std::uint64_t id = [] {
-    Dl_info library{};
-    if (dladdr(reinterpret_cast<const void*>(&build_id), &library) == 0 || !library.dli_fname)
-      return std::uint64_t{0};
-    std::ifstream file(library.dli_fname, std::ios::binary);
-    if (!file) return std::uint64_t{0};
-    Hasher hasher;
-    std::vector<char> block(std::size_t{1} << 20u);
-    while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-      hasher.bytes(block.data(), static_cast<std::size_t>(file.gcount()));
-    return hasher.digest();
-  }();
-  return id;
+  return code_id(reinterpret_cast<const void*>(&build_id));
 }
 
 }  // namespace raymeter

@@ -17,8 +17,12 @@ Environment environment();
 /// in every run (all but time, load and memory), in hexadecimal.
 std::string environment_id();
 
-/// Identifies this build: a hash of the bytes of the loaded Raymeter library, so that a rebuilt library never
-/// passes for the old one. 0 when its file can't be read.
+/// Identifies compiled code: a hash of the bytes of the file, program or shared library, from which the
+/// function or constant at `address` was loaded. So a rebuilt file never passes for the old one. 0 when it
+/// can't be read.
+std::uint64_t code_id(const void* address);
+
+/// The code_id of Raymeter's library.
 std::uint64_t build_id();
 
 }  // namespace raymeter

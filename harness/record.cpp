@@ -100,7 +100,8 @@ std::span<const Column> columns() {
       {"brute_forced", "1", "rays of the batch whose truth was checked against brute force",
        &R::brute_forced},
       {"seed", "1", "seed of rays and samples", &R::seed},
-      {"build_id", "", "hash of the library that made this record", &R::build_id},
+      {"build_id", "", "hash of the library that made this record; +hash of the plug-in or program",
+       &R::build_id},
       {"environment_id", "", "hash of machine, system and build: the entry in environment.json",
        &R::environment_id},
   };

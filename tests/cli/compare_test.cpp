@@ -1,77 +1,21 @@
 // The command, end to end: exit status, what it prints, what it writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "run_command.h"
 
 namespace raymeter {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-struct Outcome {
-  int status = -1;
-  std::string text;  ///< standard output and standard error
-};
-
-Outcome run(const std::string& arguments) {
-  Outcome outcome;
-  FILE* pipe = popen((std::string(RAYMETER_COMMAND) + " " + arguments + " 2>&1 </dev/null").c_str(), "r");
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-    outcome.text.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
-std::string content(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
-std::vector<std::string> fields(const std::string& line) {
-  std::vector<std::string> result;
-  std::istringstream in(line);
-  for (std::string field; std::getline(in, field, ',');) result.push_back(field);
-  if (line.ends_with(',')) result.emplace_back();
-  return result;
-}
-
-using CsvRow = std::map<std::string, std::string>;
-
-/// records.csv as rows by column name. No field of these tests holds a comma.
-std::vector<CsvRow> read_csv(const std::filesystem::path& path) {
-  const auto lines = lines_of(content(path));
-  std::vector<CsvRow> rows;
-  if (lines.empty()) return rows;
-  const auto names = fields(lines[0]);
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const auto values = fields(lines[i]);
-    EXPECT_EQ(values.size(), names.size()) << lines[i];
-    CsvRow& row = rows.emplace_back();
-    for (std::size_t j = 0; j < std::min(names.size(), values.size()); ++j) row[names[j]] = values[j];
-  }
-  return rows;
-}
 
 class Compare : public testing::Test {
  protected:

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -236,6 +237,51 @@ TEST(Comparison, TheReadmeShowsThisExample) {
   ASSERT_FALSE(example.empty());
   EXPECT_THAT(text("README.md"), testing::HasSubstr(example.substr(example.find("/// Primitives in groups"))))
       << "copy tests/harness/boxed_groups.h into the README";
+}
+
+TEST(Comparison, AFaultIsWhatAStructureCanBeBlamedFor) {
+  const StructureKind exact{.name = "exact", .build = {}};
+  const StructureKind bound{.name = "bound", .answers = Answers::within_bound, .build = {}};
+  const StructureKind embree{.name = "e", .answers = Answers::within_bound, .build = {}, .tolerated = true};
+  const auto faults = [&](const Record& record) {
+    return std::array{is_fault(record, exact), is_fault(record, bound), is_fault(record, embree)};
+  };
+  using Faults = std::array<bool, 3>;
+  Record record;
+  record.status = "ok";
+  record.within_bound = record.edge = record.tie = 5;
+  EXPECT_EQ(faults(record), (Faults{false, false, false}));
+  record.not_given = 1;
+  EXPECT_EQ(faults(record), (Faults{true, false, false}));
+  record.not_given = 0;
+  record.unexplained = 1;
+  EXPECT_EQ(faults(record), (Faults{true, true, false}));
+  record.unexplained = 0;
+  record.wrong = 1;
+  EXPECT_EQ(faults(record), (Faults{true, true, false}));
+  record.wrong = 0;
+  record.status = "failed";
+  EXPECT_EQ(faults(record), (Faults{true, true, false}));
+  record.status = "inconsistent";
+  EXPECT_EQ(faults(record), (Faults{true, true, true}));
+}
+
+TEST(Comparison, WithoutSettingsEverythingButBruteForceIsCompared) {
+  ComparisonSettings settings;
+  settings.batches.size = {8, 6, false};
+  settings.race.rounds = 3;
+  settings.race.min_round_seconds = 0.0001;
+  Collector collector;
+  const Registry registry = full_registry();
+  compare_structures(open_scene("soup:triangles=20"), registry, settings, collector);
+  std::set<std::string> structures, batches;
+  for (const Record& record : collector.records) {
+    structures.insert(record.structure);
+    batches.insert(record.batch);
+  }
+  EXPECT_EQ(structures.size(), registry.kinds().size() - 1);
+  EXPECT_EQ(structures.count("brute-force"), 0u);
+  EXPECT_EQ(batches, (std::set<std::string>{"primary", "shadow", "reflection", "diffuse:samples=1"}));
 }
 
 }  // namespace
