@@ -1,25 +1,14 @@
 #include "harness/camera_rays.h"
 
+#include "scenes/base/portable_math.h"
+
 namespace raymeter {
-namespace {
-
-/// x^first / first! - x^(first + 2) / (first + 2)! + ... for |x| <= pi / 4, by Horner's rule: what is left
-/// out is below 1e-19.
-double alternating_series(double x, int first) {
-  constexpr int last = 20;
-  double sum = 1;
-  for (int n = last + first; n > first; n -= 2) sum = 1 - x * x / (n * (n - 1.0)) * sum;
-  return first == 1 ? x * sum : sum;
-}
-
-}  // namespace
 
 double tan_of_half(float degrees) {
-  constexpr double radians_per_degree = 3.14159265358979323846 / 180;
   const double half = 0.5 * degrees;
   if (half > 45) return 1 / tan_of_half(static_cast<float>(180 - double(degrees)));
-  const double x = half * radians_per_degree;
-  return alternating_series(x, 1) / alternating_series(x, 0);
+  const auto [sine, cosine] = sine_cosine(half * (pi / 180));
+  return sine / cosine;
 }
 
 CameraRays::CameraRays(const Camera& camera, std::uint32_t width, std::uint32_t height) : from_(camera.from) {
