@@ -14,9 +14,9 @@
 #include "scenes/readers/byte_cursor.h"
 #include "scenes/readers/file_bytes.h"
 #include "scenes/readers/json_place.h"
-#include "scenes/readers/polygon.h"
 #include "scenes/readers/readers.h"
 #include "scenes/readers/text_cursor.h"
+#include "scenes/scene_builder.h"
 
 namespace raymeter {
 namespace {
@@ -322,7 +322,7 @@ class GltfReader {
         vertices[k] = first_vertex + corner(from[k]);
         normals[k] = first_normal + (vertices[k] - first_vertex);
       }
-      faces_.add(vertices, std::span<const std::uint32_t>(normals).first(normal ? 3 : 0), material);
+      builder_.add_polygon(vertices, std::span<const std::uint32_t>(normals).first(normal ? 3 : 0), material);
     }
   }
 
@@ -434,7 +434,7 @@ class GltfReader {
   std::string_view chunk_;  ///< a .glb's binary one
   std::vector<std::optional<std::string>> buffers_;
   SceneData data_;
-  FaceBuilder faces_{data_};
+  SceneBuilder builder_{data_};
   std::size_t dropped_ = 0;
 };
 

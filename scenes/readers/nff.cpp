@@ -5,9 +5,9 @@
 
 #include "scenes/base/error.h"
 #include "scenes/readers/file_bytes.h"
-#include "scenes/readers/polygon.h"
 #include "scenes/readers/readers.h"
 #include "scenes/readers/text_cursor.h"
+#include "scenes/scene_builder.h"
 
 namespace raymeter {
 namespace {
@@ -134,9 +134,7 @@ class NffReader {
   }
 
   void add_quadric(const Quadric& quadric) {
-    if (material() != 0) data_.quadric_materials.resize(data_.quadrics.size(), 0);
-    data_.quadrics.push_back(quadric);
-    if (material() != 0) data_.quadric_materials.push_back(material());
+    builder_.add_quadric(quadric, material());
     ++data_.shapes;
   }
 
@@ -179,14 +177,14 @@ class NffReader {
       corner_normals_.push_back(static_cast<std::uint32_t>(data_.normals.size()));
       data_.normals.push_back(cursor_.next_vector("a component of a patch's normal"));
     }
-    if (!faces_.add(corners_, corner_normals_, material()))
-      cursor_.fail_at(line, FaceBuilder::too_large(corners_.size()));
+    if (!builder_.add_polygon(corners_, corner_normals_, material()))
+      cursor_.fail_at(line, SceneBuilder::too_large(corners_.size()));
     ++data_.shapes;
   }
 
   TextCursor cursor_;
   SceneData data_;
-  FaceBuilder faces_{data_};
+  SceneBuilder builder_{data_};
   std::vector<std::uint32_t> corners_, corner_normals_;
 };
 

@@ -6,9 +6,9 @@
 
 #include "scenes/base/error.h"
 #include "scenes/readers/file_bytes.h"
-#include "scenes/readers/polygon.h"
 #include "scenes/readers/readers.h"
 #include "scenes/readers/text_cursor.h"
+#include "scenes/scene_builder.h"
 
 namespace raymeter {
 namespace {
@@ -92,13 +92,14 @@ class ObjReader {
     }
     // A face some of whose corners have no normal has none.
     if (corner_normals_.size() != corners_.size()) corner_normals_.clear();
-    if (!faces_.add(corners_, corner_normals_)) cursor_.fail(FaceBuilder::too_large(corners_.size()));
+    if (!builder_.add_polygon(corners_, corner_normals_))
+      cursor_.fail(SceneBuilder::too_large(corners_.size()));
     ++data_.shapes;
   }
 
   TextCursor cursor_;
   SceneData data_;
-  FaceBuilder faces_{data_};
+  SceneBuilder builder_{data_};
   std::vector<std::uint32_t> corners_, corner_normals_;
   std::size_t dropped_ = 0, ignored_ = 0;
 };

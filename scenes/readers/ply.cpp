@@ -9,9 +9,9 @@
 #include "scenes/base/error.h"
 #include "scenes/readers/byte_cursor.h"
 #include "scenes/readers/file_bytes.h"
-#include "scenes/readers/polygon.h"
 #include "scenes/readers/readers.h"
 #include "scenes/readers/text_cursor.h"
+#include "scenes/scene_builder.h"
 
 namespace raymeter {
 namespace {
@@ -315,14 +315,14 @@ class BodyReader {
     }
     // A vertex and its normal have the same index.
     const std::span<const std::uint32_t> normals = corners_;
-    if (!faces_.add(corners_, has_normals_ ? normals : normals.first(0)))
-      values_.fail(FaceBuilder::too_large(corners_.size()));
+    if (!builder_.add_polygon(corners_, has_normals_ ? normals : normals.first(0)))
+      values_.fail(SceneBuilder::too_large(corners_.size()));
     ++data_.shapes;
   }
 
   Values values_;
   SceneData data_;
-  FaceBuilder faces_{data_};
+  SceneBuilder builder_{data_};
   std::vector<std::uint32_t> corners_;
   std::size_t dropped_ = 0;
   bool has_vertices_ = false, has_normals_ = false;

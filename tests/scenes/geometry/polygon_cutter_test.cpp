@@ -1,6 +1,13 @@
-#include "scenes/readers/polygon.h"
+#include "scenes/geometry/polygon_cutter.h"
 
-#include "tests/scenes/readers/reader_testing.h"
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "scenes/base/random.h"
 
 namespace raymeter {
 namespace {

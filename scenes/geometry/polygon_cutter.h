@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "scenes/geometry/vec3.h"
-#include "scenes/scene.h"
 
 namespace raymeter {
 
@@ -45,27 +44,6 @@ class PolygonCutter {
   std::vector<std::int8_t> turn_;               ///< 1 convex, 0 straight or turning back, -1 reflex
   std::vector<std::uint8_t> ear_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-};
-
-/// Adds faces to a scene and keeps its optional lists (materials, normals) in step with the triangles: they
-/// stay empty until a face needs them.
-class FaceBuilder {
- public:
-  explicit FaceBuilder(SceneData& data) : data_(data) {}
-
-  /// A polygon of at least three corners, each an index into the scene's vertices, with as many indices into
-  /// its normals or none. A face with a normal of length 0 has no normals. Returns false when the polygon is
-  /// too large to be cut (PolygonCutter::cut).
-  bool add(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> normals = {},
-           std::uint32_t material = 0);
-
-  /// What add's false means, for messages.
-  static std::string too_large(std::size_t corners);
-
- private:
-  SceneData& data_;
-  PolygonCutter cutter_;
-  std::vector<Vec3> corners_;
 };
 
 }  // namespace raymeter
