@@ -13,9 +13,6 @@
 namespace raymeter {
 namespace {
 
-constexpr std::uint64_t most_rays = std::uint64_t{1} << 28;
-constexpr float before_the_light = 0x1.ffffep-1f;  // 1 - 2^-20
-
 /// Streams of Random, one for each use, so that uses of one seed don't repeat each other.
 enum Stream : std::uint64_t { ray_order_stream = 2, directions_stream, chords_stream };
 
@@ -60,9 +57,7 @@ RayBatch begin(const Arguments& kind, RayOrder order) {
 }
 
 void finish(RayBatch& batch) {
-  Hasher hasher;
-  hasher.array(std::span<const Ray>(batch.rays));
-  batch.hash = hasher.digest();
+  batch.hash = ray_hash(batch.rays);
 }
 
 void check_count(std::string_view name, std::uint64_t rays) {
@@ -83,7 +78,7 @@ void add_shadow_rays(RayBatch& batch, const Scene& scene,
   for (const Light& light : scene.lights())
     for (const auto& start : starts)
       if (start)
-        add(batch, start->origin, to_double(light.position) - to_double(start->origin), before_the_light);
+        add(batch, start->origin, to_double(light.position) - to_double(start->origin), short_of_the_light);
 }
 
 void add_reflections(RayBatch& batch, std::span<const std::optional<SurfaceStart>> starts,
@@ -122,6 +117,12 @@ void add_chords(RayBatch& batch, const Scene& scene, std::uint64_t seed, std::ui
 
 }  // namespace
 
+std::uint64_t ray_hash(std::span<const Ray> rays) {
+  Hasher hasher;
+  hasher.array(rays);
+  return hasher.digest();
+}
+
 RayBatch make_primary(const Scene& scene, const BatchSettings& settings) {
   RayBatch batch = begin(ray_arguments({"primary", {}}), settings.order);
   const PictureSize& size = settings.size;
@@ -131,15 +132,9 @@ RayBatch make_primary(const Scene& scene, const BatchSettings& settings) {
   const Camera& camera = settings.camera ? *settings.camera : scene.camera();
   check_camera(camera, scene.name());
 
-  const CameraRays rays(camera, size.width, size.height);
-  const double middle = size.pixel_corners ? 0 : 0.5;
-  for (const std::uint32_t pixel : pixel_order(size, settings.order, settings.seed)) {
-    const std::uint32_t column = pixel % size.columns(), row = pixel / size.columns();
-    Ray ray = rays.through(column + middle, row + middle);
-    ray.origin = flushed(ray.origin);
-    ray.direction = flushed(ray.direction);
-    batch.rays.push_back(ray);
-  }
+  const CameraRays rays(camera, size);
+  for (const std::uint32_t pixel : pixel_order(size, settings.order, settings.seed))
+    batch.rays.push_back(rays.through_pixel(pixel));
   finish(batch);
   return batch;
 }

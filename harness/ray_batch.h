@@ -26,6 +26,14 @@ struct RayBatch {
   BatchView view() const { return {rays, query, order, coherent(), 0}; }
 };
 
+/// Of rays in order: RayBatch::hash.
+std::uint64_t ray_hash(std::span<const Ray> rays);
+
+/// The most rays in one batch: 8 GiB of them.
+inline constexpr std::uint64_t most_rays = std::uint64_t{1} << 28u;
+/// The end of a shadow ray, whose light is at t = 1: short of whatever the light hangs on.
+inline constexpr float short_of_the_light = 0x1.ffffep-1f;  // 1 - 2^-20
+
 /// What a scene's batches have in common.
 struct BatchSettings {
   PictureSize size;
@@ -36,7 +44,7 @@ struct BatchSettings {
 };
 
 /// Rays are computed from + - * / sqrt and Random in double and rounded to float, denormals and -0 to +0, so
-/// a batch has the same hash on every machine. A batch of more than 2^28 rays (8 GiB) is refused with an
+/// a batch has the same hash on every machine. A batch of more than most_rays is refused with an
 /// Error. A batch may be empty.
 
 /// One ray for each pixel of the camera's picture, in the order asked for; directions are unit vectors,
@@ -54,7 +62,7 @@ RayBatch make_primary(const Scene& scene, const BatchSettings& settings);
 ///
 /// - shadow: to each light, whether it shines on the viewer's side or not; direction = light - origin, so
 /// that
-///   the light is at t = 1, and tfar = 1 - 2^-20, short of whatever the light hangs on. All rays to the first
+///   the light is at t = 1, and tfar = short_of_the_light. All rays to the first
 ///   light come first, then all to the second: neighbours are neighbours in space.
 /// - reflection: the mirror direction, a unit vector.
 /// - diffuse: directions cosine-weighted about the normal, unit vectors.

@@ -31,6 +31,10 @@ struct SurfaceStart {
 /// a quadric is narrower than that. That is the answer to this ray, the same for every structure.
 std::optional<SurfaceStart> leave_surface(const Scene& scene, const Ray& ray, const Hit& hit);
 
+/// The same for rays that go through the surface: the point lies on the other side, as far off it; the normal
+/// is leave_surface's, and so points away from it.
+std::optional<SurfaceStart> enter_surface(const Scene& scene, const Ray& ray, const Hit& hit);
+
 /// Denormals and -0 become +0.
 Vec3 flushed(Vec3 v);
 

@@ -22,7 +22,7 @@ TEST(CameraRays, PictureSpansTheAngleAndPixelsAreSquare) {
   camera.from = {1, 2, 3};
   camera.at = {1, 2, -5};
   camera.angle = 90;
-  const CameraRays rays(camera, 8, 4);
+  const CameraRays rays(camera, {8, 4});
   const auto slopes = [&](double x, double y) {
     const Ray ray = rays.through(x, y);
     EXPECT_EQ(ray.origin, camera.from);
