@@ -41,8 +41,8 @@ SceneData make_clusters(const Arguments& arguments) {
     const Vec3 centre = corner + random_point(random, 0, side);
     add_object(data, random, primitive, centre, size);
   }
-  // Far enough to have the outer clusters in view.
-  data.camera = Camera{.from = {1.5f, 1.3f, 2.7f}, .at = {0.5f, 0.5f, 0.5f}, .angle = 40};
+  // One cluster fills the picture, others stand behind it: a view of all would be a view of the gaps.
+  data.camera = camera_at_cube(corners[0] + 0.5f * Vec3{side, side, side}, side);
   return data;
 }
 

@@ -11,4 +11,11 @@ SceneGenerator terrain_generator();
 /// Objects crowded in clusters inside the unit cube, by one knob.
 SceneGenerator clusters_generator();
 
+// With one knob each, for studies.
+SceneGenerator crowding_generator();    ///< confined to a part of the box
+SceneGenerator sizes_generator();       ///< spread of sizes
+SceneGenerator slivers_generator();     ///< aspect ratio
+SceneGenerator stadium_generator();     ///< a small object on a wide ground
+SceneGenerator two_scales_generator();  ///< two soups of different scale
+
 }  // namespace raymeter

@@ -18,8 +18,7 @@ SceneGenerator soup_generator() {
               const Vec3 centre = random_point(random, 0, 1);
               add_random_triangle(data, random, centre, size);
             }
-            // So near that it fills the picture, two of its sides and its top in view.
-            data.camera = Camera{.from = {1.1f, 1.0f, 1.9f}, .at = {0.5f, 0.5f, 0.5f}, .angle = 33};
+            data.camera = camera_at_cube({0.5f, 0.5f, 0.5f}, 1);
             return data;
           }};
 }
