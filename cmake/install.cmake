@@ -1,5 +1,5 @@
 # What `cmake --install` lays down: the command, the library, its headers under include/raymeter, and the package
-# files with which find_package(raymeter) gives raymeter::raymeter.
+# files with which find_package(raymeter) gives raymeter::raymeter and raymeter::command.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -8,19 +8,33 @@ set_target_properties(raymeter PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION $
 target_include_directories(raymeter PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/raymeter>)
 
 install(TARGETS raymeter EXPORT raymeter_targets)
+
+# Headers that need libraries which users of the others need not have.
+set(private_headers
+  accel/cell_lists.h accel/parallel.h
+  baselines/embree_api.h baselines/embree_device.h
+  scenes/geometry/exact.h
+  scenes/readers/json_place.h
+)
 foreach(folder scenes accel baselines harness reports)
-  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raymeter FILES_MATCHING PATTERN *.h)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${folder}/*.h)
+  list(REMOVE_ITEM headers ${private_headers})
+  foreach(header ${headers})
+    cmake_path(GET header PARENT_PATH header_folder)
+    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raymeter/${header_folder})
+  endforeach()
 endforeach()
+if(TARGET raymeter_command)
+  # Finds the library from where it lies, so that an installed tree may be moved.
+  file(RELATIVE_PATH library_from_command /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(raymeter_command PROPERTIES INSTALL_RPATH $ORIGIN/${library_from_command})
+  set_target_properties(raymeter_command PROPERTIES EXPORT_NAME command)
+  install(TARGETS raymeter_command EXPORT raymeter_targets)
+endif()
+
 install(EXPORT raymeter_targets FILE raymeter-targets.cmake NAMESPACE raymeter:: DESTINATION ${package_folder})
 
 configure_package_config_file(cmake/raymeter-config.cmake.in raymeter-config.cmake INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(raymeter-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/raymeter-config.cmake ${PROJECT_BINARY_DIR}/raymeter-config-version.cmake
         DESTINATION ${package_folder})
-
-if(TARGET raymeter_command)
-  # Finds the library from where it lies, so that an installed tree may be moved.
-  file(RELATIVE_PATH library_from_command /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
-  set_target_properties(raymeter_command PROPERTIES INSTALL_RPATH $ORIGIN/${library_from_command})
-  install(TARGETS raymeter_command)
-endif()

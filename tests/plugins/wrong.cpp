@@ -18,8 +18,8 @@ class Leaky final : public raymeter::PerRayStructure<Leaky> {
     Hit best;
     for (std::uint32_t primitive = 0; primitive < scene().triangle_count(); ++primitive) {
       probe.test(primitive);
-      const Hit hit{intersect(ray, scene().triangle(primitive)), primitive};
-      if (hit < best) best = hit;
+      const float t = intersect(ray, scene().triangle(primitive));
+      if (t < best.t) best = {t, primitive};
     }
     return best;
   }

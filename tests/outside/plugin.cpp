@@ -1,0 +1,4 @@
+#include "accel/plugin.h"
+#include "small_bvh.h"
+
+RAYMETER_PLUGIN(register_small_bvh);
