@@ -85,7 +85,6 @@ class CountedBvh final : public PerRayStructure<CountedBvh> {
  public:
   CountedBvh(const Arguments& arguments, const BuildInput& input)
       : PerRayStructure(input.scene), memory_(input.memory_limit) {
-    check_coordinates(scene(), "counted-bvh");
     if (scene().primitive_count() > 0)
       build(static_cast<unsigned>(arguments.integer("branching")), input.threads);
   }
@@ -138,10 +137,11 @@ class CountedBvh final : public PerRayStructure<CountedBvh> {
     EmbreeDevice device(threads, "default", memory_);
     MeteredVector<RTCBuildPrimitive> primitives{MeteredAllocator<RTCBuildPrimitive>(memory_)};
     primitives.reserve(scene().primitive_count());
-    Bounds all;
+    if (!embree_accepts(scene().bounds())) shrink_ = far_shrink;
     for (std::uint32_t i = 0; i < scene().primitive_count(); ++i) {
-      const Bounds box = scene().bounds_of(i);
-      all.extend(box);
+      Bounds box = scene().bounds_of(i);
+      box.low = shrink_ * box.low;
+      box.high = shrink_ * box.high;
       primitives.push_back({box.low.x, box.low.y, box.low.z, 0, box.high.x, box.high.y, box.high.z, i});
     }
     const EmbreeDevice::BvhHandle bvh(rtcNewBVH(device.handle()));
@@ -165,7 +165,7 @@ class CountedBvh final : public PerRayStructure<CountedBvh> {
     nodes_.reserve(count_nodes(*root));
     references_.reserve(primitives.size());
     nodes_.emplace_back();
-    flatten(*root, all, 0, 0);
+    flatten(*root, scene().bounds(), 0, 0);
   }
 
   /// Depth first; the children of a node lie side by side.
@@ -189,7 +189,18 @@ class CountedBvh final : public PerRayStructure<CountedBvh> {
     nodes_[index] = node;
     nodes_.resize(nodes_.size() + inner.children);
     for (unsigned i = 0; i < inner.children; ++i)
-      flatten(*inner.child[i], inner.box[i], node.first + i, depth + 1);
+      flatten(*inner.child[i], regrown(inner.box[i]), node.first + i, depth + 1);
+  }
+
+  /// A box of the shrunk scene as one of the scene: not smaller, though what was flushed is lost.
+  Bounds regrown(Bounds box) const {
+    if (shrink_ == 1) return box;
+    constexpr float flushed = 0x1p-57f;  // FLT_MIN / far_shrink, and as much again
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = box.low[axis] / shrink_ - flushed;
+      box.high[axis] = box.high[axis] / shrink_ + flushed;
+    }
+    return box;
   }
 
   /// The t at which the ray enters the box, or +inf where it misses it or enters later than `last`.
@@ -262,6 +273,9 @@ class CountedBvh final : public PerRayStructure<CountedBvh> {
   MeteredVector<Node> nodes_{MeteredAllocator<Node>(memory_)};
   MeteredVector<std::uint32_t> references_{MeteredAllocator<std::uint32_t>(memory_)};
   std::uint32_t depth_ = 0;
+  /// What the scene is scaled by for Embree's builder, which drops primitives beyond its range.
+  float shrink_ = 1;
+  static constexpr float far_shrink = 0x1p-68f;  // every float is then below 2^60
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "accel/primitive_test.h"
 #include "baselines/embree_device.h"
+#include "scenes/base/error.h"
 #include "scenes/base/float_mode.h"
 
 namespace raymeter {
@@ -124,7 +125,9 @@ class EmbreeBvh {
         memory_(input.memory_limit),
         isa_(arguments.text("isa") == "default" ? embree_default_isa() : arguments.text("isa")),
         device_(input.threads, arguments.text("isa"), memory_) {
-    check_coordinates(scene_, "embree");
+    if (!embree_accepts(scene_.bounds()))
+      throw Error(fmt::format("embree: {}: coordinates beyond {:.4g} are outside what Embree accepts",
+                              scene_.name(), embree_largest_coordinate));
     bvh_.reset(rtcNewScene(device_.handle()));
     device_.check();
     const std::string& quality = arguments.text("quality");

@@ -70,12 +70,11 @@ void EmbreeDevice::check() const {
   if (code != RTC_ERROR_NONE) throw std::runtime_error(fmt::format("embree: {}", error_));
 }
 
-void check_coordinates(const Scene& scene, std::string_view structure) {
+bool embree_accepts(const Bounds& box) {
   for (int axis = 0; axis < 3; ++axis)
-    if (!scene.bounds().empty() && (scene.bounds().low[axis] < -embree_largest_coordinate ||
-                                    scene.bounds().high[axis] > embree_largest_coordinate))
-      throw Error(fmt::format("{}: {}: coordinates beyond {:.4g} are outside what Embree accepts", structure,
-                              scene.name(), embree_largest_coordinate));
+    if (box.low[axis] < -embree_largest_coordinate || box.high[axis] > embree_largest_coordinate)
+      return box.empty();
+  return true;
 }
 
 std::string_view embree_default_isa() {

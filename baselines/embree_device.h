@@ -51,9 +51,9 @@ class EmbreeDevice {
   using BvhHandle = std::unique_ptr<RTCBVHTy, Release<rtcReleaseBVH>>;
 };
 
-/// Embree drops primitives that reach beyond `embree_largest_coordinate` without a word. Throws Error, naming
-/// `structure`, if the scene has any.
-void check_coordinates(const Scene& scene, std::string_view structure);
+/// Whether all of a box is within `embree_largest_coordinate`. Embree drops primitives that are not without a
+/// word.
+bool embree_accepts(const Bounds& box);
 
 /// The instruction set that `isa=default` comes to on this machine, in the words of that parameter.
 std::string_view embree_default_isa();

@@ -27,6 +27,8 @@ double norm(const Vec3d& v) {
 /// The same in exact arithmetic, for everything that the double stage left open.
 [[gnu::noinline]] float decide_exactly(const Ray& ray, const Triangle& triangle) {
   if (!is_finite(triangle.a) || !is_finite(triangle.b) || !is_finite(triangle.c)) return no_hit;
+  // The triangles without area that files are full of; all their rays come here.
+  if (triangle.a == triangle.b || triangle.b == triangle.c || triangle.c == triangle.a) return no_hit;
   ExactUnit unit;
   for (const Vec3& v : {ray.origin, ray.direction, triangle.a, triangle.b, triangle.c}) unit.admit(v);
   const auto o = unit(ray.origin), d = unit(ray.direction);

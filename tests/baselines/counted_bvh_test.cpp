@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 
 #include "accel/memory_meter.h"
@@ -131,12 +132,25 @@ TEST(CountedBvh, AccountsForItsMemory) {
       EXPECT_THROW(registry.build(parse_spec("counted-bvh"), {scene, threads, limit}), MemoryLimitExceeded);
 }
 
-TEST(CountedBvh, RefusesHugeCoordinates) {
+TEST(CountedBvh, TakesCoordinatesBeyondEmbrees) {
+  // Half of the triangles at 2^100, half so near the origin that they are flushed where Embree's builder sees
+  // them.
+  const Scene ordinary = mixed_scene(6, 2000, 0);
   SceneData data;
-  data.vertices = {{0, 0, 0}, {2e18f, 0, 0}, {0, 1, 0}};
-  data.triangles = {{0, 1, 2}};
+  data.name = "far and near";
+  for (const Vec3& v : ordinary.vertices())
+    data.vertices.push_back((data.vertices.size() % 6 < 3 ? 0x1p100f : 0x1p-70f) * v);
+  for (std::uint32_t i = 0; i < 2000; ++i) data.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   const Scene scene{std::move(data)};
-  EXPECT_THROW(build("counted-bvh", scene), Error);
+  EXPECT_THROW(build("embree", scene), Error);
+  const auto structure = build("counted-bvh", scene);
+  for (const float scale : {0x1p100f, 0x1p-70f}) {
+    std::vector<Ray> rays = random_rays(7, 3000);
+    for (Ray& ray : rays) ray.origin = scale * ray.origin;
+    const auto hits = closest(*structure, rays);
+    EXPECT_EQ(hits, closest(*build("brute-force", scene), rays));
+    EXPECT_GT(std::ranges::count_if(hits, &Hit::found), 500);
+  }
 }
 
 }  // namespace
