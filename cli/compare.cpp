@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -78,6 +79,9 @@ ComparisonSettings settings_of(const CompareOptions& options) {
   settings.race.rounds = options.rounds;
   settings.race.threads = options.threads;
   settings.race.time_budget = options.time_budget;
+  // Both sides of all rounds fit a budget that is shorter than usual rounds.
+  settings.race.min_round_seconds =
+      std::min(settings.race.min_round_seconds, options.time_budget / (2 * options.rounds));
   settings.memory_limit = options.memory_limit;
   return settings;
 }
