@@ -22,6 +22,8 @@ struct Material {
   float shine = 20;
   float transmittance = 0;
   float refraction_index = 1;
+
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// A positional light.

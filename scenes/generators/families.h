@@ -1,5 +1,7 @@
 #pragma once
 // The families of generated scenes, a file each; scene_generators() lists them.
+#include <vector>
+
 #include "scenes/generators/generators.h"
 
 namespace raymeter {
@@ -10,6 +12,8 @@ SceneGenerator soup_generator();
 SceneGenerator terrain_generator();
 /// Objects crowded in clusters inside the unit cube, by one knob.
 SceneGenerator clusters_generator();
+/// The Standard Procedural Databases (scenes/generators/spd/), of any size.
+std::vector<SceneGenerator> spd_generators();
 
 // With one knob each, for studies.
 SceneGenerator crowding_generator();    ///< confined to a part of the box

@@ -1,4 +1,5 @@
 // Primary hits of scenes whose counts are published, against those counts.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,6 +102,58 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"quadrics/teapot12_stadium500.nff", 512, 263169},
         Expected{"quadrics/waterbox_ballstick.nff", 512, 39339}),
     [](const auto& test) { return std::filesystem::path(test.param.file).stem().string(); });
+
+/// A generated scene of the Standard Procedural Databases against the count of SPD's own file: it is as exact
+/// as the file's, whose numbers have six digits.
+struct ExpectedOfSize {
+  const char* family;
+  int size;
+  std::uint32_t width;
+  std::int64_t hits;
+  friend std::ostream& operator<<(std::ostream& out, const ExpectedOfSize& expected) {
+    return out << expected.family << expected.size;
+  }
+};
+
+class GeneratedPrimaryHits : public testing::TestWithParam<ExpectedOfSize> {};
+
+TEST_P(GeneratedPrimaryHits, EqualThePublishedCount) {
+  const auto& [family, size, width, hits] = GetParam();
+  const std::string name = fmt::format("spd/{}:size={}", family, size);
+  EXPECT_NEAR(double(count_primary_hits(open_scene(name), width)), double(hits), 5);
+}
+
+const auto size_name = [](const testing::TestParamInfo<ExpectedOfSize>& test) {
+  return fmt::format("{}{}", test.param.family, test.param.size);
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    Spd, GeneratedPrimaryHits,
+    testing::Values(ExpectedOfSize{"balls", 2, 512, 263169}, ExpectedOfSize{"balls", 3, 512, 263169},
+                    ExpectedOfSize{"gears", 2, 512, 243148}, ExpectedOfSize{"jacks", 2, 256, 10490},
+                    ExpectedOfSize{"jacks", 3, 256, 18112}, ExpectedOfSize{"lattice", 2, 512, 144389},
+                    ExpectedOfSize{"lattice", 6, 512, 250612}, ExpectedOfSize{"mount", 4, 512, 173250},
+                    ExpectedOfSize{"rings", 1, 512, 263169}, ExpectedOfSize{"rings", 3, 512, 263169},
+                    ExpectedOfSize{"sombrero", 1, 512, 112209}, ExpectedOfSize{"teapot", 4, 512, 161203},
+                    ExpectedOfSize{"tetra", 5, 512, 53807}, ExpectedOfSize{"tree", 4, 512, 160573},
+                    ExpectedOfSize{"tree", 8, 512, 166903}),
+    size_name);
+
+INSTANTIATE_TEST_SUITE_P(
+    SpdSlow, GeneratedPrimaryHits,
+    testing::Values(ExpectedOfSize{"balls", 4, 512, 263169}, ExpectedOfSize{"balls", 5, 512, 263169},
+                    ExpectedOfSize{"gears", 4, 512, 245332}, ExpectedOfSize{"gears", 9, 512, 247173},
+                    ExpectedOfSize{"jacks", 4, 256, 24589}, ExpectedOfSize{"jacks", 5, 256, 28873},
+                    ExpectedOfSize{"lattice", 12, 512, 261170}, ExpectedOfSize{"lattice", 29, 512, 262875},
+                    ExpectedOfSize{"mount", 6, 512, 173686}, ExpectedOfSize{"mount", 7, 512, 173635},
+                    ExpectedOfSize{"mount", 8, 512, 145240}, ExpectedOfSize{"rings", 7, 512, 263169},
+                    ExpectedOfSize{"rings", 17, 512, 263169}, ExpectedOfSize{"sombrero", 2, 512, 112239},
+                    ExpectedOfSize{"sombrero", 4, 512, 112240}, ExpectedOfSize{"teapot", 12, 512, 161546},
+                    ExpectedOfSize{"teapot", 15, 512, 161548}, ExpectedOfSize{"teapot", 30, 512, 161579},
+                    ExpectedOfSize{"teapot", 40, 512, 161582}, ExpectedOfSize{"tetra", 6, 512, 49950},
+                    ExpectedOfSize{"tetra", 7, 512, 46596}, ExpectedOfSize{"tetra", 8, 512, 43709},
+                    ExpectedOfSize{"tree", 11, 512, 169909}, ExpectedOfSize{"tree", 15, 512, 172305}),
+    size_name);
 
 }  // namespace
 }  // namespace raymeter
