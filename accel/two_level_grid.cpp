@@ -135,7 +135,7 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
 
     // When all sub-grids together have too many cells, or look at too many while registering, make all of
     // them coarser.
-    const std::uint64_t work_limit = registration_limit(top_lists_.references());
+    const std::uint64_t work_limit = registration_limit(scene().primitive_count());
     ResolutionRule leaf = options.leaf;
     while (true) {
       // Each sub-grid by itself; `first_cell` holds how many cells it has, until all are known.

@@ -82,10 +82,7 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
                    "one pass takes over a second")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
-  compare
-      ->add_option("--threads", o.threads,
-                   "Threads that trace, and that Embree builds with (our own\n"
-                   "structures are built by one)")
+  compare->add_option("--threads", o.threads, "Threads that build and trace")
       ->check(CLI::Range(1u, 1024u))
       ->capture_default_str();
   compare->add_option("--seed", o.seed, "Seed of rays and samples")
