@@ -11,6 +11,7 @@
 #include "baselines/register_baselines.h"
 #include "cli/compare.h"
 #include "cli/list.h"
+#include "cli/render.h"
 #include "harness/load_plugin.h"
 #include "scenes/base/error.h"
 #include "scenes/base/version.h"
@@ -104,6 +105,63 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
   return compare;
 }
 
+CLI::App* add_render(CLI::App& app, raymeter::RenderOptions& o) {
+  CLI::App* render = app.add_subcommand(
+      "render", "Render a scene with one structure: a picture, its layers, or a heat map of the work");
+  render->add_option("scene", o.scene, "A file, or a generated scene, as for compare")
+      ->required()
+      ->type_name("SCENE");
+  render->add_option("-s,--structure", o.structure, "What traces the rays")
+      ->type_name("SPEC")
+      ->capture_default_str();
+  render
+      ->add_option("-o,--output", o.out,
+                   "Picture: .png in sRGB, or .exr with the layers colour, depth, normal,\n"
+                   "primitive, steps, empty_steps, tests, distinct_tests [none]")
+      ->type_name("FILE");
+  render
+      ->add_option("--heat", o.heat,
+                   "Instead of the picture a false-colour map of the work per pixel:\n"
+                   "steps, empty-steps, tests or distinct-tests")
+      ->type_name("MEASURE");
+  render
+      ->add_option("--compare", o.compare,
+                   "With --heat: the map of another structure beside the first, on the\n"
+                   "same scale, and their difference; may be given several times")
+      ->type_name("SPEC")
+      ->allow_extra_args(false);
+  render->add_option("--size", o.size, "Picture, in pixels [the scene's, or 320x240]")->type_name("WxH");
+  render->add_option("--depth", o.depth, "Deepest generation of rays; eye rays are the first")
+      ->check(CLI::Range(1u, 1000u))
+      ->capture_default_str();
+  render->add_option("--rays", o.rays, "Whose work is counted: all rays of a pixel, or only its primary ray")
+      ->check(CLI::IsMember({"all", "primary"}))
+      ->capture_default_str();
+  render
+      ->add_option("--pixels", o.pixels,
+                   "Rays through pixel centres, or through the (W+1)x(H+1) corners\n"
+                   "as the SPD counts them")
+      ->check(CLI::IsMember({"centres", "corners"}))
+      ->capture_default_str();
+  render->add_option("--camera", o.camera, "As from=0x-5x2:at=0x0x0:up=0x0x1:angle=45 [the scene's]")
+      ->type_name("CAMERA");
+  render->add_option("--threads", o.threads, "Threads that build and render; 0: one for each CPU")
+      ->check(CLI::Range(0u, 1024u))
+      ->capture_default_str();
+  render->add_option("--memory-limit", o.memory_limit, "Bytes that a structure may use")
+      ->transform(CLI::AsSizeValue(true))
+      ->type_name("BYTES")
+      ->capture_default_str();
+  render->footer(
+      "Prints how many rays were cast in each generation. Exit status: 0, or 2 for bad usage or input.\n\n"
+      "Examples:\n"
+      "  raymeter render balls4.nff -o balls.png\n"
+      "  raymeter render balls4.nff -s grid --size 640x480 -o balls.exr\n"
+      "  raymeter render balls4.nff -s grid --compare octree --heat tests -o tests.png\n"
+      "  raymeter render balls4.nff --size 512x512 --pixels corners     (the SPD's ray counts)");
+  return render;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -115,6 +173,9 @@ int main(int argc, char** argv) {
   std::vector<std::string> plugins;
   raymeter::CompareOptions compare;
   add_plugins(*add_compare(app, compare), plugins);
+  raymeter::RenderOptions render;
+  CLI::App* render_command = add_render(app, render);
+  add_plugins(*render_command, plugins);
   std::string what;
   CLI::App* list = app.add_subcommand("list", "Show what can be named: scenes, structures, rays, columns");
   list->add_option("what", what, "scenes, structures, rays or columns")
@@ -140,6 +201,7 @@ int main(int argc, char** argv) {
       raymeter::run_list(what, registry);
       return 0;
     }
+    if (render_command->parsed()) return raymeter::run_render(render, registry);
     return raymeter::run_compare(compare, registry);
   } catch (const raymeter::Error& error) {
     fmt::print(stderr, "raymeter: {}\n", error.what());

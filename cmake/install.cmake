@@ -8,12 +8,14 @@ set_target_properties(raymeter PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION $
 target_include_directories(raymeter PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/raymeter>)
 
 install(TARGETS raymeter EXPORT raymeter_targets)
+install(TARGETS raymeter_pictures DESTINATION ${CMAKE_INSTALL_LIBDIR}/raymeter)
 
 # Headers that need libraries which users of the others need not have.
 set(private_headers
   accel/cell_lists.h accel/parallel.h
   baselines/embree_api.h baselines/embree_device.h
   scenes/geometry/exact.h
+  reports/openimageio/picture_module.h
   scenes/readers/json_place.h
 )
 foreach(folder scenes accel baselines harness reports)

@@ -108,16 +108,15 @@ std::vector<std::uint32_t> tile_pixels(const PictureSize& size, std::size_t inde
   return pixels;
 }
 
-void check(const Structure& structure, const RenderSettings& settings) {
-  const PictureSize& size = settings.size;
-  if (size.width == 0 || size.height == 0) throw Error("a picture needs at least one pixel");
-  if ((std::uint64_t{size.width} + 1) * (std::uint64_t{size.height} + 1) > most_pixels)
-    throw Error(fmt::format("a picture of {}x{} pixels is too large; {} pixels are the most", size.width,
-                            size.height, most_pixels));
-  if (settings.count && !structure.counts()) throw Error("this structure can't count what it does");
-}
-
 }  // namespace
+
+void check_picture(const PictureSize& size) {
+  if (size.width == 0 || size.height == 0) throw Error("a picture needs at least one pixel");
+  if (size.width > most_pixels || size.height > most_pixels ||
+      std::uint64_t{size.columns()} * size.rows() > most_pixels)
+    throw Error(fmt::format("a picture of {}x{} pixels is too large: {} pixels are the most", size.width,
+                            size.height, most_pixels));
+}
 
 RayCount Rendering::total(RayPurpose purpose) const {
   RayCount sum{purpose, 0};
@@ -131,8 +130,9 @@ RayCount Rendering::total(RayPurpose purpose) const {
 
 Rendering render(const Scene& scene, const Structure& structure, const RenderSettings& settings,
                  const std::function<void(std::size_t done, std::size_t total)>& progress) {
-  check(structure, settings);
   const PictureSize& size = settings.size;
+  check_picture(size);
+  if (settings.count && !structure.counts()) throw Error("this structure can't count what it does");
   Rendering rendering;
   rendering.columns = size.columns();
   rendering.rows = size.rows();

@@ -45,6 +45,8 @@ struct Rendering {
 
 /// The most pixels of a rendering.
 inline constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26u;
+/// Throws Error for a picture without pixels or with more than most_pixels.
+void check_picture(const PictureSize& size);
 
 /// Renders with trace_whitted, tile by tile on `threads` threads; the result depends on none of this.
 /// `progress` is told, from any thread but never by two at once, how many of how many tiles are done. Throws

@@ -13,8 +13,6 @@
 namespace raymeter {
 namespace {
 
-constexpr const char* purpose_names[ray_purposes] = {"primary", "reflection", "refraction", "shadow"};
-
 /// Rays of one purpose that wait to be traced, and what they are worth.
 struct Rays {
   std::vector<Ray> rays;
@@ -111,7 +109,7 @@ class Tracer {
     WhittedBatch batch;
     batch.purpose = purpose;
     batch.depth = depth;
-    batch.rays.kind = purpose_names[static_cast<std::size_t>(purpose)];
+    batch.rays.kind = name_of(purpose);
     batch.rays.name =
         purpose == RayPurpose::primary ? batch.rays.kind : fmt::format("{}-{}", batch.rays.kind, depth);
     batch.rays.query = purpose == RayPurpose::shadow ? QueryKind::any : QueryKind::closest;
@@ -205,6 +203,11 @@ class Tracer {
 };
 
 }  // namespace
+
+const char* name_of(RayPurpose purpose) {
+  constexpr const char* names[ray_purposes] = {"primary", "reflection", "refraction", "shadow"};
+  return names[static_cast<std::size_t>(purpose)];
+}
 
 void trace_whitted(const Scene& scene, const WhittedSettings& settings, std::span<const std::uint32_t> pixels,
                    const AnswerBatch& answer, std::span<WhittedPixel> picture) {

@@ -17,6 +17,8 @@ namespace raymeter {
 /// What a ray of a Whitted tracer is for.
 enum class RayPurpose : std::uint8_t { primary, reflection, refraction, shadow };
 inline constexpr std::size_t ray_purposes = 4;
+/// "primary", "reflection", "refraction", "shadow".
+const char* name_of(RayPurpose purpose);
 
 /// The rays of one generation and purpose, or a part of them. `rays.kind` and `rays.name` say the purpose,
 /// the name also the depth of all but primary rays: "reflection-2", "shadow-1" (from surfaces that rays of

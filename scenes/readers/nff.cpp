@@ -18,7 +18,7 @@ namespace {
 /// its larger end, the view's parts come in any order, and hither may be missing. `hither` is ignored; it is
 /// no surface. Surfaces are two-sided here, so a negative radius, NFF's "only the inside is visible", is
 /// taken as its absolute value. Refused: a file without a view or with two, radii of opposite sign in one
-/// cone, polygons of fewer than 3 vertices, pictures above most_pixels a side.
+/// cone, polygons of fewer than 3 vertices.
 class NffReader {
  public:
   NffReader(const std::filesystem::path& file, std::string_view text)
@@ -31,7 +31,7 @@ class NffReader {
   }
 
  private:
-  static constexpr std::int64_t most_pixels = 65536;
+  static constexpr std::int64_t most_pixels = 0x7fffffff;
 
   void read_entity(std::string_view word) {
     if (word == "v")

@@ -102,7 +102,7 @@ TEST(Nff, hostile_files) {
            {"n11_polygon_degenerate.nff", 5},
            {"n12_view_degenerate.nff", 0, "2: the view's from and at"},
            {"n13_view_up_parallel.nff", 0, "2: the view's up"},
-           {"n14_resolution_huge.nff", 0, "8: resolution 1000000"},
+           {"n14_resolution_huge.nff", 1},
            {"n16_unknown_directive.nff", 0, "12: unknown entity .box"},
            {"n17_coords_1e30.nff", 2},
            {"n18_coords_1e-40.nff", 2},
