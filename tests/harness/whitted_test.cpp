@@ -188,7 +188,7 @@ Scene balls() {
   both.specular = 0.3f;
   constexpr int rows[] = {0, 0, 0, 1, 1, 1, 2, 2, 2};
   for (int i = 0; i < 9; ++i)
-    add_sphere(data, {float(i % 3) - 1, float(i / 3) - 1, 0.3f * float(i % 2)}, 0.45f,
+    add_sphere(data, {float(i % 3) - 1, float(rows[i]) - 1, 0.3f * float(i % 2)}, 0.45f,
                i % 3 == 0   ? both
                : i % 3 == 1 ? mirror
                             : matt);
