@@ -42,7 +42,9 @@ void run_list(std::string_view what, const Registry& registry) {
   } else if (what == "rays") {
     for (const RayKind& kind : ray_kinds()) {
       fmt::print("{}: {} ({} hit)\n", kind.name, kind.summary,
-                 kind.query == QueryKind::any ? "any" : "closest");
+                 !kind.query                    ? "closest and any"
+                 : kind.query == QueryKind::any ? "any"
+                                                : "closest");
       print_parameters(kind.parameters);
     }
   } else {

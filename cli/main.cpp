@@ -47,7 +47,8 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
       ->allow_extra_args(false);
   compare
       ->add_option("-r,--rays", o.rays,
-                   "Rays: primary shadow reflection diffuse ao random; several times\n"
+                   "Rays: primary shadow reflection diffuse ao random whitted; several\n"
+                   "times "
                    "[primary shadow reflection diffuse]")
       ->type_name("KIND")
       ->allow_extra_args(false);

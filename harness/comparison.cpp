@@ -11,9 +11,9 @@
 #include "accel/note.h"
 #include "harness/environment.h"
 #include "harness/grading.h"
+#include "harness/judged_batches.h"
 #include "harness/ray_kinds.h"
 #include "harness/timed_build.h"
-#include "harness/truth.h"
 #include "scenes/base/error.h"
 #include "scenes/base/hash.h"
 
@@ -44,46 +44,6 @@ unsigned all_cpus() {
   return std::max(1u, std::thread::hardware_concurrency());
 }
 
-/// A batch with what is known to be true of it.
-struct JudgedBatch {
-  RayBatch rays;
-  Truth truth;
-};
-
-Truth reference_truth(const Scene& scene, Structure& reference, const RayBatch& batch,
-                      ComparisonObserver& observer) {
-  reference.prepare(batch.view());
-  BatchAnswers answers;
-  trace(reference, batch.view(), answers, all_cpus());
-  Truth truth = establish_truth(scene, batch, answers, {.seed = batch.hash});
-  std::size_t refuted = 0;
-  for (std::size_t i = 0; i < batch.rays.size(); ++i)
-    refuted += batch.query == QueryKind::closest ? truth.answers.hits[i] != answers.hits[i]
-                                                 : truth.answers.occluded[i] != answers.occluded[i];
-  if (refuted) observer.reference_refuted(batch.name, refuted);
-  return truth;
-}
-
-std::vector<JudgedBatch> make_batches(const Scene& scene, const Registry& registry,
-                                      const ComparisonSettings& settings, std::span<const Arguments> kinds,
-                                      ComparisonObserver& observer) {
-  const auto reference = build_reference(registry, {scene, settings.race.threads});
-  JudgedBatch primary{make_primary(scene, settings.batches), {}};
-  primary.truth = reference_truth(scene, *reference, primary.rays, observer);
-  std::vector<JudgedBatch> batches;
-  for (const Arguments& kind : kinds) {
-    if (kind.name() == "primary") {
-      batches.push_back(primary);
-      continue;
-    }
-    JudgedBatch batch{make_batch(scene, kind, settings.batches, primary.rays, primary.truth.answers.hits),
-                      {}};
-    batch.truth = reference_truth(scene, *reference, batch.rays, observer);
-    batches.push_back(std::move(batch));
-  }
-  return batches;
-}
-
 /// What is the same in all rows of a comparison.
 struct Context {
   const Scene& scene;
@@ -104,15 +64,34 @@ std::string build_id_of(const StructureKind& kind) {
   return hex(own) + (id == own ? "" : "+" + hex(id));
 }
 
-std::string key_of(const Context& context, const RayBatch& batch, const Arguments& arguments,
+/// What a row of records is about: a batch, or several together.
+struct Subject {
+  std::string name;  ///< canonical
+  std::uint64_t rays = 0, hash = 0;
+  std::string query;
+  RayOrder order = RayOrder::tiled;
+};
+
+Subject subject_of(const RayBatch& batch) {
+  return {batch.name, batch.rays.size(), batch.hash, batch.query == QueryKind::any ? "any" : "closest",
+          batch.order};
+}
+
+Subject sum_of(const BatchGroup& group) {
+  Subject subject{group.sum_name, 0, group.ray_hash(), "closest and any", group.batches[0].rays.order};
+  for (const JudgedBatch& batch : group.batches) subject.rays += batch.rays.rays.size();
+  return subject;
+}
+
+std::string key_of(const Context& context, const Subject& subject, const Arguments& arguments,
                    const std::string& build) {
   const RaceSettings& race = context.settings.race;
   Hasher hasher;
   hasher.value(context.scene.hash());
   hasher.text(context.scene.name());
-  hasher.value(batch.hash);
+  hasher.value(subject.hash);
   for (const std::string& text :
-       {batch.name, arguments.canonical(), build, context.baseline, context.baseline_build})
+       {subject.name, arguments.canonical(), build, context.baseline, context.baseline_build})
     hasher.text(text);
   hasher.text(environment_id());
   hasher.value(race.rounds);
@@ -125,22 +104,22 @@ std::string key_of(const Context& context, const RayBatch& batch, const Argument
 }
 
 /// The part of a record that is known before anything was built.
-Record blank_record(const Context& context, const JudgedBatch& batch, const Arguments& arguments,
+Record blank_record(const Context& context, const Subject& subject, const Arguments& arguments,
                     const std::string& build) {
   constexpr std::string_view order_names[] = {"tiled", "scanline", "shuffled"};
   Record r;
-  r.key = key_of(context, batch.rays, arguments, build);
+  r.key = key_of(context, subject, arguments, build);
   r.scene = context.scene.name();
   r.scene_hash = hex(context.scene.hash());
   r.primitives = context.scene.primitive_count();
   r.structure = arguments.name();
   r.spec = arguments.canonical();
   r.baseline = context.baseline;
-  r.batch = batch.rays.name;
-  r.query = batch.rays.query == QueryKind::any ? "any" : "closest";
-  r.order = order_names[static_cast<std::size_t>(batch.rays.order)];
-  r.rays = batch.rays.rays.size();
-  r.ray_hash = hex(batch.rays.hash);
+  r.batch = subject.name;
+  r.query = subject.query;
+  r.order = order_names[static_cast<std::size_t>(subject.order)];
+  r.rays = subject.rays;
+  r.ray_hash = hex(subject.hash);
   r.threads = context.settings.race.threads;
   r.seed = context.settings.batches.seed;
   r.build_id = build;
@@ -220,33 +199,81 @@ void add_grades(Record& r, const Grades& grades) {
   r.unexplained = grades.unexplained;
 }
 
-/// Races, counts and grades one built structure on one batch. Without a baseline there is a throughput but no
-/// ratio.
-Record measure(const Context& context, Structure* baseline, const Built& built, Answers policy,
-               JudgedBatch& batch, Record r, ComparisonObserver& observer) {
+/// What was measured of one structure on one batch, or on several together.
+struct Measurement {
+  RaceResult race;
+  CounterTotals counters;
+  Grades grades;
+  std::uint64_t hits = 0, hit_hash = 0, reference_hash = 0, brute_forced = 0;
+  bool consistent = true;  ///< the counted pass gave the answers of the timed one
+};
+
+/// Races, counts and grades one built structure on one batch; the answers are not kept.
+Measurement measure(const Context& context, Structure& baseline, Structure& structure, Answers policy,
+                    JudgedBatch& batch, ComparisonObserver& observer) {
   const RayBatch& rays = batch.rays;
-  add_build(r, built);
-  const RaceResult result =
-      race(baseline ? *baseline : *built.structure, *built.structure, rays, context.settings.race);
-  const BatchAnswers& answers = result.structure.answers;
-  bool consistent = true;
-  add_race(r, result, context.settings.race.rounds);
-  if (!baseline) r.baseline_mrays_per_s = r.ratio = r.ratio_low = r.ratio_high = {};
-  r.hits = count_hits(answers);
-  r.hit_hash = hex(hit_hash(answers));
-  if (built.structure->counts()) {
+  Measurement m;
+  m.race = race(baseline, structure, rays, context.settings.race);
+  m.race.baseline.answers = {};
+  const BatchAnswers answers = std::exchange(m.race.structure.answers, {});
+  m.hits = count_hits(answers);
+  m.hit_hash = hit_hash(answers);
+  if (structure.counts()) {
     BatchAnswers counted;
-    add_counters(r, count(*built.structure, rays.view(), counted, all_cpus()));
-    if (counted != answers) consistent = false;
+    m.counters = count(structure, rays.view(), counted, all_cpus());
+    m.consistent = counted == answers;
   }
   const Row row{answers, policy};
   if (const std::size_t refuted = settle_disputes(context.scene, rays, row, batch.truth))
     observer.reference_refuted(rays.name, refuted);
-  add_grades(r, grade(context.scene, rays, batch.truth, row));
-  r.reference_hash = hex(hit_hash(batch.truth.answers));
-  r.brute_forced = batch.truth.brute_forced;
-  r.status = consistent ? "ok" : "inconsistent";
-  if (!consistent) add_note(r.note, "the counted pass gave other answers than the timed one");
+  m.grades = grade(context.scene, rays, batch.truth, row);
+  m.reference_hash = hit_hash(batch.truth.answers);
+  m.brute_forced = batch.truth.brute_forced;
+  return m;
+}
+
+/// The batches of a group one after the other.
+Measurement sum_of(std::span<const Measurement> parts, const BatchGroup& group) {
+  Measurement sum;
+  std::vector<RaceResult> races;
+  std::vector<std::size_t> rays;
+  Hasher hits, references;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Measurement& part = parts[i];
+    races.push_back(part.race);
+    rays.push_back(group.batches[i].rays.rays.size());
+    sum.counters.add(part.counters);
+    for (std::size_t grade = 0; grade < grade_count; ++grade)
+      sum.grades[static_cast<Grade>(grade)] += part.grades[static_cast<Grade>(grade)];
+    sum.hits += part.hits;
+    hits.value(part.hit_hash);
+    references.value(part.reference_hash);
+    sum.brute_forced += part.brute_forced;
+    sum.consistent = sum.consistent && part.consistent;
+  }
+  sum.race = sum_of_races(races, rays);
+  sum.hit_hash = hits.digest();
+  sum.reference_hash = references.digest();
+  return sum;
+}
+
+/// Completes a record. Without a baseline there is a throughput but no ratio.
+Record finished_record(const Context& context, Record r, const Built& built, const Measurement& m,
+                       const Built& baseline) {
+  add_build(r, built);
+  add_race(r, m.race, context.settings.race.rounds);
+  if (!baseline.structure) {
+    r.baseline_mrays_per_s = r.ratio = r.ratio_low = r.ratio_high = {};
+    add_note(r.note, "no ratio, the baseline failed: " + baseline.failure);
+  }
+  add_counters(r, m.counters);
+  r.hits = m.hits;
+  r.hit_hash = hex(m.hit_hash);
+  add_grades(r, m.grades);
+  r.reference_hash = hex(m.reference_hash);
+  r.brute_forced = m.brute_forced;
+  r.status = m.consistent ? "ok" : "inconsistent";
+  if (!m.consistent) add_note(r.note, "the counted pass gave other answers than the timed one");
   return r;
 }
 
@@ -294,10 +321,14 @@ void compare_structures(const Scene& scene, const Registry& registry, const Comp
   const std::vector<Arguments> kinds = ray_kinds_of(settings);
 
   observer.progress(0, 1, fmt::format("{}: rays and their true hits", scene.name()));
-  std::vector<JudgedBatch> batches = make_batches(scene, registry, settings, kinds, observer);
+  const auto reference = build_reference(registry, {scene, settings.race.threads});
+  std::vector<BatchGroup> groups = make_judged_batches(
+      scene, *reference, settings.batches, kinds,
+      [&](std::string_view batch, std::size_t rays) { observer.reference_refuted(batch, rays); });
 
   const BuildInput input{scene, settings.race.threads, settings.memory_limit};
-  const std::size_t total = specs.size() * batches.size();
+  std::size_t total = 0;
+  for (const BatchGroup& group : groups) total += specs.size() * group.batches.size();
   std::size_t done = 0;
   std::optional<Built> baseline;  // built when first needed: a resumed run may need nothing at all
   for (const Spec& spec : specs) {
@@ -305,27 +336,45 @@ void compare_structures(const Scene& scene, const Registry& registry, const Comp
     const StructureKind& kind = registry.find(spec.name);
     const std::string build = build_id_of(kind);
     std::optional<Built> built;  // only the baseline and this one are alive during its races
-    for (JudgedBatch& batch : batches) {
-      Record blank = blank_record(context, batch, arguments, build);
-      observer.progress(done++, total,
-                        fmt::format("{} {} {}", scene.name(), arguments.brief(), batch.rays.name));
-      if (const Record* earlier = observer.finished(blank.key)) {
-        observer.record(*earlier);
-        continue;
+    const auto record_failure = [&](Record record) {
+      record.status = "failed";
+      record.note = built->failure;
+      observer.record(record);
+    };
+    for (BatchGroup& group : groups) {
+      // A row of the sum needs the rounds of all its batches: they are raced again where it is missing.
+      std::optional<Record> sum;
+      const Record* earlier_sum = nullptr;
+      if (!group.sum_name.empty()) {
+        sum = blank_record(context, sum_of(group), arguments, build);
+        earlier_sum = observer.finished(sum->key);
       }
-      if (!baseline) baseline = build_once(registry, settings.baseline, input);
-      if (!built) built = build_timed(registry, spec, input);
-      if (built->structure) {
-        Record record = measure(context, baseline->structure.get(), *built, kind.answers, batch,
-                                std::move(blank), observer);
-        if (!baseline->structure)
-          add_note(record.note, "no ratio, the baseline failed: " + baseline->failure);
-        observer.record(record);
-      } else {
-        blank.status = "failed";
-        blank.note = built->failure;
-        observer.record(blank);
+      std::vector<Measurement> parts;
+      for (JudgedBatch& batch : group.batches) {
+        Record blank = blank_record(context, subject_of(batch.rays), arguments, build);
+        observer.progress(done++, total,
+                          fmt::format("{} {} {}", scene.name(), arguments.brief(), batch.rays.name));
+        const Record* earlier = observer.finished(blank.key);
+        if (earlier) observer.record(*earlier);
+        if (earlier && (!sum || earlier_sum)) continue;
+        if (!baseline) baseline = build_once(registry, settings.baseline, input);
+        if (!built) built = build_timed(registry, spec, input);
+        if (!built->structure) {
+          if (!earlier) record_failure(std::move(blank));
+          continue;
+        }
+        Structure& opponent = baseline->structure ? *baseline->structure : *built->structure;
+        parts.push_back(measure(context, opponent, *built->structure, kind.answers, batch, observer));
+        if (!earlier)
+          observer.record(finished_record(context, std::move(blank), *built, parts.back(), *baseline));
       }
+      if (!sum) continue;
+      if (earlier_sum)
+        observer.record(*earlier_sum);
+      else if (built->structure)
+        observer.record(finished_record(context, *sum, *built, sum_of(parts, group), *baseline));
+      else
+        record_failure(*sum);
     }
   }
 }

@@ -62,6 +62,15 @@ double warm_up(const Structure& structure, const BatchView& batch, RaceSide& sid
   return pass;
 }
 
+void add_statistics(RaceResult& result) {
+  result.baseline.median_rays_per_second = median(result.baseline.rays_per_second);
+  result.structure.median_rays_per_second = median(result.structure.rays_per_second);
+  result.ratio = median(result.ratios);
+  result.ratio_interval = median_interval(result.ratios);
+  result.spread = relative_spread(result.ratios);
+  result.noisy = result.spread > noisy_spread;
+}
+
 }  // namespace
 
 RaceResult race(Structure& baseline, Structure& structure, const RayBatch& batch,
@@ -112,13 +121,36 @@ RaceResult race(Structure& baseline, Structure& structure, const RayBatch& batch
     run_rounds();
   }
 
-  result.baseline.median_rays_per_second = median(result.baseline.rays_per_second);
-  result.structure.median_rays_per_second = median(result.structure.rays_per_second);
-  result.ratio = median(result.ratios);
-  result.ratio_interval = median_interval(result.ratios);
-  result.spread = relative_spread(result.ratios);
-  result.noisy = result.spread > noisy_spread;
+  add_statistics(result);
   return result;
+}
+
+RaceResult sum_of_races(std::span<const RaceResult> races, std::span<const std::size_t> rays) {
+  RaceResult sum;
+  std::size_t rounds = std::numeric_limits<std::size_t>::max();
+  double all_rays = 0;
+  sum.pinned = true;
+  for (std::size_t i = 0; i < races.size(); ++i) {
+    if (rays[i] == 0) continue;
+    rounds = std::min<std::size_t>(rounds, races[i].rounds());
+    all_rays += static_cast<double>(rays[i]);
+    sum.pinned = sum.pinned && races[i].pinned;
+    sum.threads = races[i].threads;
+  }
+  if (all_rays == 0) rounds = 0;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    double ours = 0, theirs = 0;  // seconds
+    for (std::size_t i = 0; i < races.size(); ++i) {
+      if (rays[i] == 0) continue;
+      ours += static_cast<double>(rays[i]) / races[i].structure.rays_per_second[round];
+      theirs += static_cast<double>(rays[i]) / races[i].baseline.rays_per_second[round];
+    }
+    sum.structure.rays_per_second.push_back(all_rays / ours);
+    sum.baseline.rays_per_second.push_back(all_rays / theirs);
+    sum.ratios.push_back(theirs / ours);
+  }
+  add_statistics(sum);
+  return sum;
 }
 
 }  // namespace raymeter

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "accel/structure.h"
@@ -52,5 +53,10 @@ inline constexpr double noisy_spread = 0.05;
 /// batch without rays gives a result without rounds, its numbers NaN.
 RaceResult race(Structure& baseline, Structure& structure, const RayBatch& batch,
                 const RaceSettings& settings);
+
+/// The race over several batches, of rays[i] rays in races[i], one after the other: round k took as long as
+/// the rounds k of all races together. As many rounds as all of them have; batches without rays are left out.
+/// The repetitions and answers are not summed.
+RaceResult sum_of_races(std::span<const RaceResult> races, std::span<const std::size_t> rays);
 
 }  // namespace raymeter

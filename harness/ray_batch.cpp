@@ -51,7 +51,7 @@ RayBatch begin(const Arguments& kind, RayOrder order) {
   RayBatch batch;
   batch.name = kind.canonical();
   batch.kind = kind.name();
-  batch.query = find_ray_kind(kind.name()).query;
+  batch.query = find_ray_kind(kind.name()).query.value();
   batch.order = order;
   return batch;
 }

@@ -16,7 +16,7 @@ namespace raymeter {
 struct RayBatch {
   std::string name;  ///< canonical spec of the kind: "primary", "ao:length=0.05:samples=1", ...; of random,
                      ///< with the count that there is, not 0
-  std::string kind;  ///< primary, shadow, reflection, diffuse, ao, random
+  std::string kind;  ///< primary, shadow, reflection, diffuse, ao, random; whitted beyond depth 1
   QueryKind query = QueryKind::closest;
   RayOrder order = RayOrder::tiled;
   std::vector<Ray> rays;
@@ -51,7 +51,8 @@ struct BatchSettings {
 /// rounded. Throws Error for a picture of no or too many pixels and for a camera that shows nothing.
 RayBatch make_primary(const Scene& scene, const BatchSettings& settings);
 
-/// The rays of `kind` (its arguments from ray_arguments, harness/ray_kinds.h). `primary` is make_primary's
+/// The rays of `kind` (its arguments from ray_arguments, harness/ray_kinds.h), which is not `whitted`: those
+/// come from trace_whitted. `primary` is make_primary's
 /// with the same scene and settings, and `primary_hits[i]` the closest hit of primary.rays[i].
 ///
 /// Secondary rays start at every primary hit, whatever its material, where leave_surface

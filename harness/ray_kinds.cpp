@@ -23,6 +23,12 @@ std::span<const RayKind> ray_kinds() {
        "uniform random chords of the sphere about the scene",
        QueryKind::closest,
        {{"count", ParameterType::integer, "0", "how many; 0: as many as primary rays", 0, 0x1p28}}},
+      {"whitted",
+       "those of a recursive ray tracer, generation by generation, and all together",
+       {},
+       {{"depth", ParameterType::integer, "5", "deepest generation; eye rays are the first", 1, 64},
+        {"rays", ParameterType::text, "all",
+         "all, or one generation: primary, shadow-1, reflection-2, refraction-2, shadow-2, ..."}}},
   };
   return kinds;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,12 +12,12 @@ namespace raymeter {
 /// A kind of rays, named with parameters like a structure: `ao:length=0.05`.
 struct RayKind {
   std::string name;
-  std::string summary;  ///< one line
-  QueryKind query;
+  std::string summary;             ///< one line
+  std::optional<QueryKind> query;  ///< nothing: rays of both
   std::vector<Parameter> parameters;
 };
 
-/// primary, shadow, reflection, diffuse, ao, random: in the order of `raymeter list rays`.
+/// primary, shadow, reflection, diffuse, ao, random, whitted: in the order of `raymeter list rays`.
 std::span<const RayKind> ray_kinds();
 
 /// Throws Error naming what kinds there are.

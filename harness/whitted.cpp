@@ -109,9 +109,10 @@ class Tracer {
     WhittedBatch batch;
     batch.purpose = purpose;
     batch.depth = depth;
-    batch.rays.kind = name_of(purpose);
+    // What later rays begin from is scattered: they are not of the kinds that are coherent.
+    batch.rays.kind = depth == 1 ? name_of(purpose) : "whitted";
     batch.rays.name =
-        purpose == RayPurpose::primary ? batch.rays.kind : fmt::format("{}-{}", batch.rays.kind, depth);
+        purpose == RayPurpose::primary ? name_of(purpose) : fmt::format("{}-{}", name_of(purpose), depth);
     batch.rays.query = purpose == RayPurpose::shadow ? QueryKind::any : QueryKind::closest;
     batch.rays.order = settings_.order;
     return batch;

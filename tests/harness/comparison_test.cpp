@@ -227,6 +227,97 @@ TEST(Comparison, EmptyScenesAndBatchesAreCompared) {
   }
 }
 
+/// The one of this structure and batch.
+const Record& record_of(const Collector& collector, std::string_view structure, std::string_view batch) {
+  static const Record none;
+  for (const Record& record : collector.records)
+    if (record.structure == structure && record.batch == batch) return record;
+  ADD_FAILURE() << "no record of " << structure << " on " << batch;
+  return none;
+}
+
+TEST(Comparison, AWhittedRenderingHasARowForEachGenerationAndForAll) {
+  const Registry registry = full_registry();
+  const Scene scene = open_scene("soup:triangles=300:size=0.3");  // Ks 0.2: all surfaces mirror
+  const ComparisonSettings settings = quick_settings({"grid"}, {"whitted:depth=2"});
+  Collector first;
+  compare_structures(scene, registry, settings, first);
+  const char* all = "whitted:depth=2:rays=all";
+  std::vector<std::string> batches;
+  for (const Record& record : first.records)
+    if (record.structure == "grid") batches.push_back(record.batch);
+  EXPECT_THAT(batches, testing::ElementsAre("whitted:depth=2:rays=primary", "whitted:depth=2:rays=shadow-1",
+                                            "whitted:depth=2:rays=reflection-2",
+                                            "whitted:depth=2:rays=shadow-2", all));
+  EXPECT_EQ(first.records.size(), 10u);
+  const Record& sum = record_of(first, "grid", all);
+  std::uint64_t rays = 0, hits = 0, right = 0;
+  double seconds = 0, tests = 0;
+  for (const Record& record : first.records) {
+    if (record.structure != "grid" || record.batch == all) continue;
+    EXPECT_EQ(record.right, record.rays) << record.batch;
+    rays += *record.rays;
+    hits += *record.hits;
+    right += *record.right;
+    seconds += double(*record.rays) / *record.mrays_per_s;
+    tests += *record.tests_per_ray * double(*record.rays);
+  }
+  EXPECT_EQ(sum.rays, rays);
+  EXPECT_EQ(sum.hits, hits);
+  EXPECT_EQ(sum.right, right);
+  EXPECT_EQ(sum.query, "closest and any");
+  EXPECT_NEAR(*sum.tests_per_ray, tests / double(rays), 1e-9 * tests);
+  EXPECT_GT(*sum.mrays_per_s, 0.5 * double(rays) / seconds);
+  EXPECT_LT(*sum.mrays_per_s, 2 * double(rays) / seconds);
+  EXPECT_EQ(sum.rounds, 3u);
+  EXPECT_LE(*sum.ratio_low, *sum.ratio);
+  EXPECT_NE(sum.hit_hash, record_of(first, "grid", batches[0]).hit_hash);
+  EXPECT_EQ(sum.hit_hash, sum.reference_hash);
+  EXPECT_EQ(sum.ray_hash, record_of(first, "embree", all).ray_hash);
+
+  // A run that was killed before the last row goes on from its other rows.
+  Collector second;
+  for (const Record& record : first.records) second.earlier[record.key] = record;
+  second.earlier.erase(sum.key);
+  compare_structures(scene, registry, settings, second);
+  ASSERT_EQ(second.records.size(), 10u);
+  EXPECT_EQ(record_of(second, "grid", batches[1]).mrays_per_s,
+            record_of(first, "grid", batches[1]).mrays_per_s);
+  EXPECT_EQ(record_of(second, "grid", all).rays, rays);
+  EXPECT_EQ(record_of(second, "grid", all).hit_hash, sum.hit_hash);
+}
+
+TEST(Comparison, OneGenerationOfAWhittedRenderingCanBeAskedFor) {
+  const Registry registry = full_registry();
+  const Scene scene = open_scene("soup:triangles=300:size=0.3");
+  Collector collector;
+  compare_structures(scene, registry, quick_settings({"grid"}, {"whitted:depth=3:rays=reflection-3"}),
+                     collector);
+  ASSERT_EQ(collector.records.size(), 2u);
+  EXPECT_EQ(collector.records[0].batch, "whitted:depth=3:rays=reflection-3");
+  try {
+    compare_structures(scene, registry, quick_settings({"grid"}, {"whitted:depth=2:rays=refraction-2"}),
+                       collector);
+    ADD_FAILURE() << "there is no glass in it";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("has no rays 'refraction-2'; it has: all, primary, shadow-1, "
+                                   "reflection-2, shadow-2"));
+  }
+}
+
+TEST(Comparison, WhatCanNotBeBuiltFailsInEveryGeneration) {
+  const Registry registry = full_registry();
+  ComparisonSettings settings = quick_settings({"grid"}, {"whitted:depth=1"});
+  settings.memory_limit = 100;
+  Collector collector;
+  compare_structures(open_scene("soup:triangles=300:size=0.3"), registry, settings, collector);
+  int failed = 0;
+  for (const Record& record : collector.records)
+    if (record.structure == "grid") failed += record.status == "failed";
+  EXPECT_EQ(failed, 3) << "primary, shadow-1, all";
+}
+
 TEST(Comparison, TheReadmeShowsThisExample) {
   const auto text = [](const char* file) {
     std::ostringstream content;

@@ -188,5 +188,33 @@ TEST(Race, AlternatesWhoBeginsAndPreparesBoth) {
   EXPECT_EQ(structure.prepared, 10u);
 }
 
+TEST(Race, OfSeveralBatchesTakesTheTimeOfAll) {
+  std::vector<RaceResult> races(3);
+  races[0].structure.rays_per_second = {100, 200, 100};
+  races[0].baseline.rays_per_second = {400, 400, 400};
+  races[0].ratios = {0.25, 0.5, 0.25};
+  races[0].pinned = true;
+  races[1].structure.rays_per_second = {50, 50, 50, 50};
+  races[1].baseline.rays_per_second = {25, 50, 100, 100};
+  races[1].ratios = {2, 1, 0.5, 0.5};
+  races[1].pinned = true;
+  // races[2] had no rays.
+  const std::vector<std::size_t> rays{400, 100, 0};
+  const RaceResult sum = sum_of_races(races, rays);
+  expect_sound(sum);
+  ASSERT_EQ(sum.rounds(), 3u);  // as many as both have
+  // Seconds: 4 + 2 against 1 + 4; 2 + 2 against 1 + 2; 4 + 2 against 1 + 1.
+  EXPECT_DOUBLE_EQ(sum.structure.rays_per_second[0], 500.0 / 6);
+  EXPECT_DOUBLE_EQ(sum.baseline.rays_per_second[0], 500.0 / 5);
+  EXPECT_DOUBLE_EQ(sum.ratios[0], 5.0 / 6);
+  EXPECT_DOUBLE_EQ(sum.ratios[1], 3.0 / 4);
+  EXPECT_DOUBLE_EQ(sum.ratios[2], 2.0 / 6);
+  EXPECT_DOUBLE_EQ(sum.ratio, 3.0 / 4);
+  EXPECT_TRUE(sum.pinned);
+  races[0].pinned = false;
+  EXPECT_FALSE(sum_of_races(races, rays).pinned);
+  EXPECT_EQ(sum_of_races(races, std::vector<std::size_t>{0, 0, 0}).rounds(), 0u);
+}
+
 }  // namespace
 }  // namespace raymeter

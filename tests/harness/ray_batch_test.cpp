@@ -87,13 +87,16 @@ TEST(RayBatch, CountsNamesAndQueries) {
   EXPECT_FALSE(ao.coherent());
   EXPECT_TRUE(tiled().secondary("shadow").coherent());
   EXPECT_EQ(tiled().secondary("primary").hash, tiled().batch.hash);
-  for (const RayKind& kind : ray_kinds())
+  for (const RayKind& kind : ray_kinds()) {
+    if (!kind.query) continue;  // whitted makes several batches
     for (const Ray& ray : tiled().secondary(kind.name).rays) ASSERT_TRUE(is_traceable(ray));
+  }
 }
 
 TEST(RayBatch, EveryOrderHasTheSameRays) {
   const Primary scanline(small(RayOrder::scanline)), shuffled(small(RayOrder::shuffled));
   for (const RayKind& kind : ray_kinds()) {
+    if (!kind.query) continue;  // whitted makes several batches
     const RayBatch expected = tiled().secondary(kind.name);
     for (const Primary* other : {&scanline, &shuffled}) {
       const RayBatch batch = other->secondary(kind.name);

@@ -28,6 +28,7 @@ TEST(RayKinds, DefaultsAreValidAndWrittenOut) {
 
 TEST(RayKinds, ComplaintsSayWhatThereIs) {
   EXPECT_THAT(complaint("caustic"), testing::HasSubstr("primary, shadow, reflection, diffuse, ao, random"));
+  EXPECT_THAT(complaint("whitted:depth=0"), testing::HasSubstr("1..64"));
   EXPECT_THAT(complaint("ao:length=0"), testing::HasSubstr("length"));
   EXPECT_THAT(complaint("diffuse:samples=0"), testing::HasSubstr("1..4096"));
   EXPECT_THAT(complaint("shadow:samples=2"), testing::HasSubstr("takes no parameters"));
