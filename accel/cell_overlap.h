@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
 #include "accel/cell_grid.h"
 #include "accel/grid_resolution.h"
 #include "accel/walk_space.h"
 #include "scenes/base/spec.h"
 #include "scenes/geometry/primitives.h"
+#include "scenes/geometry/quadric_field.h"
 #include "scenes/scene.h"
 
 namespace raymeter {
@@ -22,7 +24,7 @@ inline WalkSpace walk_space_of(const Scene& scene) {
 /// How closely primitives are registered.
 enum class Fit : std::uint8_t {
   box,    ///< in every cell that their bounding box meets
-  exact,  ///< only in cells that they meet themselves: triangles and spheres; others as `box`
+  exact,  ///< only in cells that they meet themselves; cylinders and cones as `box`
 };
 /// The parameter `fit` of grids, and the value given for it.
 Parameter fit_parameter();
@@ -69,6 +71,42 @@ class SphereOverlap {
   double slack_;
 };
 
+/// The surface of a general quadric against boxes of one size: those in which its polynomial may be zero.
+class GeneralQuadricOverlap {
+ public:
+  GeneralQuadricOverlap(const GeneralQuadric& quadric, const Vec3d& half, double slack)
+      : field_(quadric), reach_(half + Vec3d{slack, slack, slack}) {}
+  bool meets(const Vec3d& centre) const {
+    const Vec3d middle = centre - field_.centre();
+    return !field_.certainly_misses({middle - reach_, middle + reach_});
+  }
+
+ private:
+  QuadricField field_;
+  Vec3d reach_;
+};
+
+/// Of a primitive that is only known to lie in its bounding box.
+struct BoxOverlap {
+  bool meets(const Vec3d&) const { return true; }
+};
+
+/// Returns use(overlap), where `overlap` answers whether the primitive meets boxes of one size that its
+/// bounding box meets.
+template <class Use>
+decltype(auto) with_overlap(const Scene& scene, std::uint32_t primitive, const Vec3d& half, double slack,
+                            const Use& use) {
+  return scene.visit(primitive, [&]<class Shape>(const Shape& shape) {
+    if constexpr (std::is_same_v<Shape, Triangle>) {
+      return use(TriangleOverlap(shape, half, slack));
+    } else if constexpr (std::is_same_v<Shape, GeneralQuadric>) {
+      return use(GeneralQuadricOverlap(shape, half, slack));
+    } else {
+      return shape.kind == QuadricKind::sphere ? use(SphereOverlap(shape, half, slack)) : use(BoxOverlap());
+    }
+  });
+}
+
 /// Layers first..last of a grid on each axis.
 struct CellRange {
   std::array<std::uint32_t, 3> first, last;
@@ -112,19 +150,14 @@ template <class Visit>
 void for_each_cell_of(const Scene& scene, std::uint32_t primitive, const CellGrid& grid, double margin,
                       Fit fit, const Visit& visit) {
   const CellRange range = cells_of_box(grid, scene.bounds_of(primitive), margin);
-  const auto any = [](const Vec3d&) { return true; };
-  if (fit == Fit::box || range.first == range.last) return for_each_cell(grid, range, any, visit);
+  if (fit == Fit::box || range.first == range.last)
+    return for_each_cell(grid, range, [](const Vec3d&) { return true; }, visit);
   // Twice the margin: once for the walk, once for the rounding of the overlap tests.
   const Vec3d half = 0.5 * grid.size;
   const double slack = 2 * margin;
-  if (scene.is_triangle(primitive)) {
-    const TriangleOverlap overlap(scene.triangle(primitive), half, slack);
-    return for_each_cell(grid, range, [&](const Vec3d& centre) { return overlap.meets(centre); }, visit);
-  }
-  const Quadric& quadric = scene.quadric(primitive);
-  if (quadric.kind != QuadricKind::sphere) return for_each_cell(grid, range, any, visit);
-  const SphereOverlap overlap(quadric, half, slack);
-  for_each_cell(grid, range, [&](const Vec3d& centre) { return overlap.meets(centre); }, visit);
+  with_overlap(scene, primitive, half, slack, [&](const auto& overlap) {
+    for_each_cell(grid, range, [&](const Vec3d& centre) { return overlap.meets(centre); }, visit);
+  });
 }
 
 }  // namespace raymeter

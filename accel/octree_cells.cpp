@@ -201,12 +201,8 @@ class OctreeBuilder {
     // Twice the margin, as in cell_overlap.h: once for the walk, once for the rounding of the tests.
     const double half_edge = 0.5 * half * tree_.space.cell, slack = 2 * margin;
     const Vec3d half_size{half_edge, half_edge, half_edge};
-    if (scene_.is_triangle(primitive))
-      return of_these(met, TriangleOverlap(scene_.triangle(primitive), half_size, slack), corner, half);
-    const Quadric& quadric = scene_.quadric(primitive);
-    if (quadric.kind == QuadricKind::sphere)
-      return of_these(met, SphereOverlap(quadric, half_size, slack), corner, half);
-    return static_cast<std::uint8_t>(met);
+    return with_overlap(scene_, primitive, half_size, slack,
+                        [&](const auto& overlap) { return of_these(met, overlap, corner, half); });
   }
 
   /// Of `candidates`, the children that `overlap` meets.

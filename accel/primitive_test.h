@@ -15,18 +15,11 @@ inline void test_closest(const Scene& scene, std::uint32_t primitive, const Filt
                          Probe& probe) {
   probe.test(primitive);
   const float tmax = std::min(best.t, ray.ray.tfar);
-  float t = no_hit;
-  if (scene.is_triangle(primitive)) {
-    const Triangle triangle = scene.triangle(primitive);
-    if (!may_hit(ray, triangle, tmax)) return;
+  const float t = scene.visit(primitive, [&](const auto& shape) {
+    if (!may_hit(ray, shape, tmax)) return no_hit;
     probe.decide();
-    t = decide(ray.ray, triangle);
-  } else {
-    const Quadric& quadric = scene.quadric(primitive);
-    if (!may_hit(ray, quadric, tmax)) return;
-    probe.decide();
-    t = decide(ray.ray, quadric);
-  }
+    return decide(ray.ray, shape);
+  });
   if (t == no_hit) return;
   const Hit hit{t, primitive};
   if (hit < best) best = hit;
@@ -36,16 +29,11 @@ inline void test_closest(const Scene& scene, std::uint32_t primitive, const Filt
 template <class Probe>
 inline bool test_any(const Scene& scene, std::uint32_t primitive, const FilterRay& ray, Probe& probe) {
   probe.test(primitive);
-  if (scene.is_triangle(primitive)) {
-    const Triangle triangle = scene.triangle(primitive);
-    if (!may_hit(ray, triangle, ray.ray.tfar)) return false;
+  return scene.visit(primitive, [&](const auto& shape) {
+    if (!may_hit(ray, shape, ray.ray.tfar)) return false;
     probe.decide();
-    return decide(ray.ray, triangle) != no_hit;
-  }
-  const Quadric& quadric = scene.quadric(primitive);
-  if (!may_hit(ray, quadric, ray.ray.tfar)) return false;
-  probe.decide();
-  return decide(ray.ray, quadric) != no_hit;
+    return decide(ray.ray, shape) != no_hit;
+  });
 }
 
 /// Every primitive tested: for rays that a structure can't walk (walk_space.h).

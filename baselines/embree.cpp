@@ -64,7 +64,7 @@ Ray ray_of(RTCRayN* rays, unsigned width, unsigned lane) {
       RTCRayN_tfar(rays, width, lane)};
 }
 
-// ---- Quadrics as user geometry. ----
+// ---- Quadrics, of the special and then of the general kind, as user geometry. ----
 
 std::uint32_t quadric_id(const Scene& scene, unsigned index) {
   return static_cast<std::uint32_t>(scene.triangle_count()) + index;
@@ -136,7 +136,7 @@ class EmbreeBvh {
                                                               : RTC_BUILD_QUALITY_HIGH);
     if (arguments.flag("robust")) rtcSetSceneFlags(bvh_.get(), RTC_SCENE_FLAG_ROBUST);
     if (!scene_.triangles().empty()) attach_triangles();
-    if (!scene_.quadrics().empty()) attach_quadrics();
+    if (scene_.primitive_count() > scene_.triangle_count()) attach_quadrics();
     rtcCommitScene(bvh_.get());
     device_.check();
   }
@@ -170,7 +170,8 @@ class EmbreeBvh {
   void attach_quadrics() {
     const EmbreeDevice::GeometryHandle quadrics(rtcNewGeometry(device_.handle(), RTC_GEOMETRY_TYPE_USER));
     device_.check();
-    rtcSetGeometryUserPrimitiveCount(quadrics.get(), static_cast<unsigned>(scene_.quadrics().size()));
+    rtcSetGeometryUserPrimitiveCount(
+        quadrics.get(), static_cast<unsigned>(scene_.primitive_count() - scene_.triangle_count()));
     rtcSetGeometryUserData(quadrics.get(), const_cast<Scene*>(&scene_));  // only ever read
     rtcSetGeometryBoundsFunction(quadrics.get(), quadric_bounds, nullptr);
     rtcSetGeometryIntersectFunction(quadrics.get(), intersect_quadric);

@@ -14,8 +14,8 @@ install(TARGETS raymeter_pictures DESTINATION ${CMAKE_INSTALL_LIBDIR}/raymeter)
 set(private_headers
   accel/cell_lists.h accel/parallel.h
   baselines/embree_api.h baselines/embree_device.h
-  scenes/geometry/exact.h
   reports/openimageio/picture_module.h
+  scenes/geometry/clipped_roots.h scenes/geometry/exact.h
   scenes/readers/json_place.h
 )
 foreach(folder scenes accel baselines harness reports)

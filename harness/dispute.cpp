@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "scenes/geometry/decide.h"
@@ -62,9 +63,13 @@ struct SeenTriangle {
   double longest_edge = 0, edge_product = 0, farthest = 0;
 };
 
-/// a t^2 + 2 b t + c = 0 where the line meets the quadric's infinite surface; along it the axis parameter
-/// (0 at the base, 1 at the apex) is axis_at_0 + t * axis_slope.
+/// a t^2 + 2 b t + c = 0 where the line meets the quadric's infinite surface. Of that, the part counts where
+/// each height at_0 + t * slope is between 0 and 1: along an axis from base to apex, or across a clip box.
 struct SeenQuadric {
+  struct Height {
+    double at_0, slope;
+  };
+
   SeenQuadric(const Ray& ray, const Quadric& q) {
     const Vec3d w = to_double(ray.origin) - to_double(q.base), d = to_double(ray.direction);
     const double r = q.base_radius;
@@ -78,16 +83,58 @@ struct SeenQuadric {
     a = l * dot(u, u) - delta * delta * p * p;
     b = l * dot(u, v) - delta * p * s;
     c = l * dot(v, v) - s * s;
-    bounded = true;
-    axis_at_0 = dot(w, axis) / l;
-    axis_slope = p / l;
+    heights.push_back({dot(w, axis) / l, p / l});
+  }
+
+  SeenQuadric(const Ray& ray, const GeneralQuadric& quadric) {
+    const Vec3d w = to_double(ray.origin) - to_double(quadric.centre), d = to_double(ray.direction);
+    const auto& q = quadric.coefficients;
+    // Term by term: of x y, say, the product (w.x + t d.x) (w.y + t d.y).
+    const auto add = [&](double factor, int i, int j) {
+      a += factor * d[i] * d[j];
+      b += 0.5 * factor * (w[i] * d[j] + w[j] * d[i]);
+      c += factor * w[i] * w[j];
+    };
+    for (int i = 0; i < 3; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      add(q[at], i, i);
+      add(q[3 + at], i, (i + 1) % 3);
+      b += 0.5 * q[6 + at] * d[i];
+      c += q[6 + at] * w[i];
+      // A box without thickness has no inside: its only height is an edge.
+      const double low = quadric.clip.low[i], thickness = double(quadric.clip.high[i]) - low;
+      heights.push_back(thickness > 0 ? Height{(ray.origin[i] - low) / thickness, d[i] / thickness}
+                                      : Height{0, 0});
+    }
+    c += q[9];
   }
 
   double discriminant() const { return b * b - a * c; }
+  /// The distance to the nearest cut, in parts of the whole; negative outside, infinite where nothing is cut.
+  double inside(double t) const {
+    double least = infinity;
+    for (const Height& height : heights) {
+      const double at_t = height.at_0 + t * height.slope;
+      least = std::min({least, at_t, 1 - at_t});
+    }
+    return least;
+  }
+
   double a = 0, b = 0, c = 0;
-  bool bounded = false;
-  double axis_at_0 = 0.5, axis_slope = 0;
+  std::vector<Height> heights;
 };
+
+/// Calls the function for what the ray sees of the primitive.
+template <class UseTriangle, class UseQuadric>
+auto see(const Scene& scene, const Ray& ray, std::uint32_t primitive, const UseTriangle& use_triangle,
+         const UseQuadric& use_quadric) {
+  return scene.visit(primitive, [&]<class Shape>(const Shape& shape) {
+    if constexpr (std::is_same_v<Shape, Triangle>)
+      return use_triangle(SeenTriangle(ray, shape));
+    else
+      return use_quadric(SeenQuadric(ray, shape));
+  });
+}
 
 struct Range {
   double low = 0, high = 0;
@@ -117,7 +164,7 @@ Range near(const Scene& scene, const Ray& ray, std::uint32_t primitive) {
 }
 
 /// Where the line meets the infinite surface of a primitive. `inside` is the least barycentric coordinate, or
-/// the distance to the nearer rim in axis lengths: negative outside of the primitive.
+/// the distance to the nearest cut: negative outside of the primitive.
 struct Crossing {
   double t = 0, inside = 0;
   double edge_bound = edge_nearness;
@@ -129,30 +176,28 @@ std::vector<Crossing> crossings(const Scene& scene, const Ray& ray, std::uint32_
   const auto add = [&](double t, double inside, double edge_bound = edge_nearness) {
     if (std::isfinite(t)) found.push_back({t, inside, edge_bound});
   };
-  if (scene.is_triangle(primitive)) {
-    const SeenTriangle triangle(ray, scene.triangle(primitive));
+  const auto of_triangle = [&](const SeenTriangle& triangle) {
     const auto coordinates = triangle.barycentric();
     add(triangle.t(), *std::min_element(coordinates.begin(), coordinates.end()), triangle.edge_bound());
-    return found;
-  }
-  const SeenQuadric quadric(ray, scene.quadric(primitive));
-  if (quadric.discriminant() < 0) return found;
-  // The form in which neither root cancels.
-  const double q = -(quadric.b + std::copysign(std::sqrt(quadric.discriminant()), quadric.b));
-  for (const double t : {q / quadric.a, quadric.c / q}) {
-    const double along = quadric.axis_at_0 + t * quadric.axis_slope;
-    add(t, quadric.bounded ? std::min(along, 1 - along) : infinity);
-  }
+  };
+  const auto of_quadric = [&](const SeenQuadric& quadric) {
+    if (quadric.discriminant() < 0) return;
+    // The form in which neither root cancels.
+    const double q = -(quadric.b + std::copysign(std::sqrt(quadric.discriminant()), quadric.b));
+    for (const double t : {q / quadric.a, quadric.c / q}) add(t, quadric.inside(t));
+  };
+  see(scene, ray, primitive, of_triangle, of_quadric);
   return found;
 }
 
 /// The line runs along the surface.
 bool is_grazing(const Scene& scene, const Ray& ray, std::uint32_t primitive) {
-  if (scene.is_triangle(primitive))
-    return SeenTriangle(ray, scene.triangle(primitive)).cosine() < grazing_cosine;
-  const SeenQuadric quadric(ray, scene.quadric(primitive));
-  return std::abs(quadric.discriminant()) <=
-         grazing_discriminant * (quadric.b * quadric.b + std::abs(quadric.a * quadric.c));
+  return see(
+      scene, ray, primitive, [](const SeenTriangle& triangle) { return triangle.cosine() < grazing_cosine; },
+      [](const SeenQuadric& quadric) {
+        return std::abs(quadric.discriminant()) <=
+               grazing_discriminant * (quadric.b * quadric.b + std::abs(quadric.a * quadric.c));
+      });
 }
 
 /// t is as near to an end of the ray's interval as a float kernel's t may be wrong.
@@ -172,28 +217,53 @@ bool is_degenerate(const Scene& scene, const Ray& ray, std::uint32_t primitive) 
   return 0.5 * length(triangle.normal) < degenerate_area * triangle.longest_edge * triangle.longest_edge;
 }
 
+/// To first order, how far the t of a float kernel may be off, but for its last bits; and the greatest
+/// distance that it computes with. `normal` is that of the surface at t.
+struct KernelError {
+  double t, distance;
+};
+
+KernelError kernel_error(const Ray& ray, const Triangle& shape, const Vec3d&, double t) {
+  const SeenTriangle triangle(ray, shape);
+  const double distance = triangle.farthest + std::abs(t) * length(triangle.direction);
+  return {16 * unit * triangle.edge_product * distance / std::abs(dot(triangle.normal, triangle.direction)),
+          distance};
+}
+
+KernelError kernel_error(const Ray& ray, const Quadric& q, const Vec3d& normal, double t) {
+  const Vec3d direction = to_double(ray.direction);
+  const double radius = std::max(q.base_radius, q.apex_radius),
+               axis = q.kind == QuadricKind::sphere ? 0 : length(to_double(q.apex) - to_double(q.base)),
+               distance = length(to_double(ray.origin) - to_double(q.base)) + radius + axis +
+                          std::abs(t) * length(direction);
+  return {16 * unit * distance * distance / (radius * std::abs(dot(direction, normal))), distance};
+}
+
+KernelError kernel_error(const Ray& ray, const GeneralQuadric& quadric, const Vec3d&, double t) {
+  Vec3d reach;
+  for (int i = 0; i < 3; ++i)
+    reach[i] = std::abs(double(ray.origin[i]) - quadric.centre[i]) + std::abs(t * ray.direction[i]);
+  const auto& q = quadric.coefficients;
+  double terms = std::abs(q[9]);
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    terms += reach[i] *
+             (std::abs(q[at]) * reach[i] + std::abs(q[3 + at]) * reach[(i + 1) % 3] + std::abs(q[6 + at]));
+  }
+  const SeenQuadric seen(ray, quadric);
+  return {16 * unit * terms / std::abs(2 * (seen.a * t + seen.b)), length(reach)};
+}
+
 }  // namespace
 
 double t_bound(const Scene& scene, const Ray& ray, std::uint32_t primitive, double t) {
-  const double speed = length(to_double(ray.direction));
-  double bound = 0, distance = 0;
-  if (scene.is_triangle(primitive)) {
-    const SeenTriangle triangle(ray, scene.triangle(primitive));
-    distance = triangle.farthest + std::abs(t) * speed;
-    bound = 16 * unit * triangle.edge_product * distance / std::abs(dot(triangle.normal, triangle.direction));
-  } else {
-    const Quadric& q = scene.quadric(primitive);
-    const double radius = std::max(q.base_radius, q.apex_radius);
-    const Vec3d origin = to_double(ray.origin), point = origin + t * to_double(ray.direction);
-    const double axis = q.kind == QuadricKind::sphere ? 0 : length(to_double(q.apex) - to_double(q.base));
-    distance = length(origin - to_double(q.base)) + radius + axis + std::abs(t) * speed;
-    const double cosine =
-        std::abs(dot(to_double(ray.direction), scene.geometric_normal(primitive, point))) / speed;
-    bound = 16 * unit * distance * distance / (radius * cosine * speed);
-  }
+  const Vec3d direction = to_double(ray.direction);
+  const Vec3d normal = scene.geometric_normal(primitive, to_double(ray.origin) + t * direction);
+  const KernelError error =
+      scene.visit(primitive, [&](const auto& shape) { return kernel_error(ray, shape, normal, t); });
   // A NaN or infinite bound (no area, no slope) becomes the cap, too.
-  const double cap = most_displacement * distance / speed;
-  return (bound < cap ? bound : cap) + 4 * unit * std::abs(t);
+  const double cap = most_displacement * error.distance / length(direction);
+  return (error.t < cap ? error.t : cap) + 4 * unit * std::abs(t);
 }
 
 bool within_2_ulp(float a, float b) {
@@ -206,9 +276,7 @@ std::optional<Grade> explain_hit(const Scene& scene, const Ray& ray, const Hit& 
   if (!truth.found() || answer.primitive >= scene.primitive_count()) return std::nullopt;
   const bool same = answer.primitive == truth.primitive;
   float t = truth.t;
-  if (!same)
-    t = scene.is_triangle(answer.primitive) ? decide(ray, scene.triangle(answer.primitive))
-                                            : decide(ray, scene.quadric(answer.primitive));
+  if (!same) t = scene.visit(answer.primitive, [&](const auto& shape) { return decide(ray, shape); });
   if (t == no_hit || !within_2_ulp(t, truth.t)) return std::nullopt;
   if (!(std::abs(double(answer.t) - double(t)) <= t_bound(scene, ray, answer.primitive, t)))
     return std::nullopt;

@@ -20,7 +20,11 @@ namespace raymeter {
 /// |axis| + t |D|; a float evaluation displaces the surface by about u S^2 / radius, and t by that over the
 /// cosine to the normal: 16 u S^2 / (radius |cos| |D|) + 4 u t.
 ///
-/// Both are capped where the hit would be displaced by 2^-12 of its distance: beyond that it is for the
+/// General quadric: on the line the polynomial is a t^2 + 2 b t + c. A float evaluation of it is off by about
+/// 16 u P, where P is the sum of its terms' magnitudes at |origin - centre| + |t D| on each axis, and t by
+/// that over the slope: 16 u P / |2 (a t + b)| + 4 u t.
+///
+/// All are capped where the hit would be displaced by 2^-12 of its distance: beyond that it is for the
 /// other formulas to explain it.
 double t_bound(const Scene& scene, const Ray& ray, std::uint32_t primitive, double t);
 

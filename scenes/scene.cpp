@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -68,6 +69,40 @@ void check_quadrics(SceneData& data) {
     data.warnings.push_back(fmt::format("dropped {} quadrics without extent (radius or axis zero)", dropped));
 }
 
+bool is_constant(const GeneralQuadric& q) {
+  return std::all_of(q.coefficients.begin(), q.coefficients.end() - 1, [](float x) { return x == 0; });
+}
+
+/// Gives the bounds of those that are kept.
+std::vector<Bounds> check_general_quadrics(SceneData& data) {
+  std::vector<Bounds> bounds;
+  std::size_t kept = 0;
+  const bool has_materials = !data.general_quadric_materials.empty();
+  for (std::size_t i = 0; i < data.general_quadrics.size(); ++i) {
+    GeneralQuadric& q = data.general_quadrics[i];
+    if (!is_finite(q))
+      throw Error(fmt::format("{}: general quadric {} has a number that is not finite", data.name, i));
+    for (int axis = 0; axis < 3; ++axis)
+      if (q.clip.low[axis] > q.clip.high[axis])
+        throw Error(fmt::format("{}: the clip box of general quadric {} is empty", data.name, i));
+    flush(q.centre);
+    flush(q.clip.low);
+    flush(q.clip.high);
+    for (float& x : q.coefficients) flush(x);
+    const Bounds box = is_constant(q) ? Bounds{} : bounds_of(q);
+    if (box.empty()) continue;
+    if (has_materials) data.general_quadric_materials[kept] = data.general_quadric_materials[i];
+    data.general_quadrics[kept++] = q;
+    bounds.push_back(box);
+  }
+  if (const std::size_t dropped = data.general_quadrics.size() - kept)
+    data.warnings.push_back(fmt::format(
+        "dropped {} general quadrics without surface (constant, or none in the clip box)", dropped));
+  data.general_quadrics.resize(kept);
+  if (has_materials) data.general_quadric_materials.resize(kept);
+  return bounds;
+}
+
 void check_triangles(SceneData& data) {
   for (std::size_t i = 0; i < data.vertices.size(); ++i) {
     check_finite(data, data.vertices[i], "vertex", i);
@@ -97,8 +132,10 @@ void check_triangles(SceneData& data) {
 
 void check_materials(SceneData& data) {
   if (data.materials.empty()) data.materials.emplace_back();
-  for (const auto& [ids, count] : {std::pair(&data.triangle_materials, data.triangles.size()),
-                                   std::pair(&data.quadric_materials, data.quadrics.size())}) {
+  for (const auto& [ids, count] :
+       {std::pair(&data.triangle_materials, data.triangles.size()),
+        std::pair(&data.quadric_materials, data.quadrics.size()),
+        std::pair(&data.general_quadric_materials, data.general_quadrics.size())}) {
     if (!ids->empty() && ids->size() != count)
       throw Error(fmt::format("{}: {} primitives but {} material numbers", data.name, count, ids->size()));
     for (const auto id : *ids)
@@ -132,7 +169,37 @@ std::uint64_t hash_of(const SceneData& data) {
   for (const Vec3& v : {camera.from, camera.at, camera.up, data.background})
     for (int axis = 0; axis < 3; ++axis) hasher.value(v[axis]);
   hasher.value(camera.angle);
+  // Only where there are any: hashes of scenes without are older than these.
+  if (!data.general_quadrics.empty()) {
+    for (const GeneralQuadric& q : data.general_quadrics) {
+      for (const Vec3& v : {q.centre, q.clip.low, q.clip.high})
+        for (int axis = 0; axis < 3; ++axis) hasher.value(v[axis]);
+      hasher.array(std::span<const float>(q.coefficients));
+    }
+    hasher.array(std::span<const std::uint32_t>(data.general_quadric_materials));
+  }
   return hasher.digest();
+}
+
+// Along the normal at a point of the surface, of any length.
+Vec3d normal_of(const Triangle& t, const Vec3d&) {
+  return cross(to_double(t.b) - to_double(t.a), to_double(t.c) - to_double(t.a));
+}
+Vec3d normal_of(const Quadric& q, const Vec3d& point) {
+  const Vec3d w = point - to_double(q.base);
+  if (q.kind == QuadricKind::sphere) return w;
+  // The gradient of L |w x A|^2 - (L r0 + delta w.A)^2 (decide.h), halved and divided by L.
+  const Vec3d axis = to_double(q.apex) - to_double(q.base);
+  const double l = dot(axis, axis), r = q.base_radius, delta = double(q.apex_radius) - r,
+               along = dot(w, axis);
+  return l * w - along * axis - ((r + delta * along / l) * delta) * axis;
+}
+Vec3d normal_of(const GeneralQuadric& quadric, const Vec3d& point) {
+  const Vec3d w = point - to_double(quadric.centre);
+  const auto& q = quadric.coefficients;
+  return {2 * (q[0] * w.x) + q[3] * w.y + q[5] * w.z + q[6],
+          q[3] * w.x + 2 * (q[1] * w.y) + q[4] * w.z + q[7],
+          q[5] * w.x + q[4] * w.y + 2 * (q[2] * w.z) + q[8]};
 }
 
 }  // namespace
@@ -151,11 +218,12 @@ void check_camera(const Camera& camera, std::string_view scene) {
 }
 
 Scene::Scene(SceneData data) : data_(std::move(data)) {
-  if (data_.triangles.size() + data_.quadrics.size() >= no_primitive)
+  if (primitive_count() >= not_answered)
     throw Error(fmt::format("{}: more primitives than can be numbered", data_.name));
   check_materials(data_);
   check_triangles(data_);
   check_quadrics(data_);
+  general_quadric_bounds_ = check_general_quadrics(data_);
   data_.vertices.emplace_back();  // the pad that vertices() promises
   if (data_.shapes == 0) data_.shapes = primitive_count();
   for (std::uint32_t i = 0; i < primitive_count(); ++i) bounds_.extend(bounds_of(i));
@@ -183,37 +251,25 @@ Scene::Scene(SceneData data) : data_(std::move(data)) {
 }
 
 Bounds Scene::bounds_of(std::uint32_t primitive) const {
+  const std::size_t others = data_.triangles.size() + data_.quadrics.size();
+  if (primitive >= others) return general_quadric_bounds_[primitive - others];
   return is_triangle(primitive) ? raymeter::bounds_of(triangle(primitive))
                                 : raymeter::bounds_of(quadric(primitive));
 }
 
 Vec3d Scene::geometric_normal(std::uint32_t primitive, const Vec3d& point) const {
-  Vec3d n;
-  if (is_triangle(primitive)) {
-    const Triangle t = triangle(primitive);
-    n = cross(to_double(t.b) - to_double(t.a), to_double(t.c) - to_double(t.a));
-  } else {
-    const Quadric& q = quadric(primitive);
-    const Vec3d w = point - to_double(q.base);
-    if (q.kind == QuadricKind::sphere) {
-      n = w;
-    } else {
-      // The gradient of L |w x A|^2 - (L r0 + delta w.A)^2 (decide.h), halved and divided by L.
-      const Vec3d axis = to_double(q.apex) - to_double(q.base);
-      const double l = dot(axis, axis), r = q.base_radius, delta = double(q.apex_radius) - r,
-                   along = dot(w, axis);
-      n = l * w - along * axis - ((r + delta * along / l) * delta) * axis;
-    }
-  }
+  const Vec3d n = visit(primitive, [&](const auto& shape) { return normal_of(shape, point); });
   const double size = length(n);
   return size > 0 ? (1 / size) * n : Vec3d{};
 }
 
 const Material& Scene::material_of(std::uint32_t primitive) const {
-  const auto triangles = static_cast<std::uint32_t>(data_.triangles.size());
-  const auto& ids = primitive < triangles ? data_.triangle_materials : data_.quadric_materials;
-  if (ids.empty()) return data_.materials[0];
-  return data_.materials[ids[primitive < triangles ? primitive : primitive - triangles]];
+  std::size_t index = primitive;
+  const std::vector<std::uint32_t>* ids = &data_.triangle_materials;
+  if (index >= data_.triangles.size()) index -= data_.triangles.size(), ids = &data_.quadric_materials;
+  if (ids != &data_.triangle_materials && index >= data_.quadrics.size())
+    index -= data_.quadrics.size(), ids = &data_.general_quadric_materials;
+  return data_.materials[ids->empty() ? 0 : (*ids)[index]];
 }
 
 Camera default_camera(const Bounds& box) {

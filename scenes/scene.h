@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scenes/geometry/bounds.h"
@@ -46,16 +47,18 @@ struct Camera {
 void check_camera(const Camera& camera, std::string_view scene);
 
 /// What a reader or a generator fills in; `Scene` checks it. Primitives are numbered: first all triangles in
-/// order, then all quadrics.
+/// order, then all quadrics, then all general quadrics.
 struct SceneData {
   std::string name;
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `vertices`
   std::vector<Quadric> quadrics;
+  std::vector<GeneralQuadric> general_quadrics;
 
-  std::vector<Material> materials;                ///< when empty, one default material is supplied
-  std::vector<std::uint32_t> triangle_materials;  ///< one for each triangle; empty: all 0
-  std::vector<std::uint32_t> quadric_materials;   ///< one for each quadric; empty: all 0
+  std::vector<Material> materials;                       ///< when empty, one default material is supplied
+  std::vector<std::uint32_t> triangle_materials;         ///< one for each triangle; empty: all 0
+  std::vector<std::uint32_t> quadric_materials;          ///< one for each quadric; empty: all 0
+  std::vector<std::uint32_t> general_quadric_materials;  ///< one for each general quadric; empty: all 0
 
   std::vector<Vec3> normals;  ///< shading normals; may be empty
   /// For each triangle three indices into `normals`, or all no_normal; empty when no triangle has any.
@@ -74,21 +77,25 @@ struct SceneData {
 /// denormals, its indices in range.
 class Scene {
  public:
-  /// Flushes denormals, checks indices and finiteness, drops quadrics without extent (radius or axis zero;
-  /// with a warning), warns of triangles without area (they stay, so that numbering is the source's, and are
-  /// never hit), supplies missing camera, lights and material, and hashes the content. Throws Error naming
-  /// the scene.
+  /// Flushes denormals, checks indices and finiteness, drops quadrics without extent (radius or axis zero)
+  /// and general quadrics that nothing can hit (a constant polynomial; no surface within the clip box), with
+  /// a warning, refuses clip boxes whose low is above their high, warns of triangles without area (they stay,
+  /// so that numbering is the source's, and are never hit), supplies missing camera, lights and material, and
+  /// hashes the content. Throws Error naming the scene.
   explicit Scene(SceneData data);
 
   const std::string& name() const { return data_.name; }
   std::size_t triangle_count() const { return data_.triangles.size(); }
-  std::size_t primitive_count() const { return data_.triangles.size() + data_.quadrics.size(); }
+  std::size_t primitive_count() const {
+    return data_.triangles.size() + data_.quadrics.size() + data_.general_quadrics.size();
+  }
   std::uint64_t shape_count() const { return data_.shapes; }
 
   /// Vertices, in an array that may be read 4 bytes past its end (Embree reads 16 bytes a vertex).
   std::span<const Vec3> vertices() const { return {data_.vertices.data(), data_.vertices.size() - 1}; }
   std::span<const std::array<std::uint32_t, 3>> triangles() const { return data_.triangles; }
   std::span<const Quadric> quadrics() const { return data_.quadrics; }
+  std::span<const GeneralQuadric> general_quadrics() const { return data_.general_quadrics; }
 
   bool is_triangle(std::uint32_t primitive) const { return primitive < data_.triangles.size(); }
   Triangle triangle(std::uint32_t primitive) const {
@@ -97,6 +104,17 @@ class Scene {
   }
   const Quadric& quadric(std::uint32_t primitive) const {
     return data_.quadrics[primitive - data_.triangles.size()];
+  }
+  const GeneralQuadric& general_quadric(std::uint32_t primitive) const {
+    return data_.general_quadrics[primitive - data_.triangles.size() - data_.quadrics.size()];
+  }
+  /// Calls f with the primitive itself: a Triangle, a Quadric or a GeneralQuadric.
+  template <class F>
+  decltype(auto) visit(std::uint32_t primitive, F&& f) const {
+    if (is_triangle(primitive)) return std::forward<F>(f)(triangle(primitive));
+    if (primitive - data_.triangles.size() < data_.quadrics.size())
+      return std::forward<F>(f)(quadric(primitive));
+    return std::forward<F>(f)(general_quadric(primitive));
   }
   Bounds bounds_of(std::uint32_t primitive) const;
 
@@ -118,6 +136,7 @@ class Scene {
 
  private:
   SceneData data_;
+  std::vector<Bounds> general_quadric_bounds_;  // which take microseconds to find
   Bounds bounds_;
   std::uint64_t hash_ = 0;
 };

@@ -6,6 +6,18 @@
 #include <array>
 
 namespace raymeter {
+namespace {
+
+template <class Shape>
+void add(const Shape& shape, std::vector<Shape>& shapes, std::uint32_t material,
+         std::vector<std::uint32_t>& materials) {
+  const bool with_materials = material != 0 || !materials.empty();
+  if (with_materials) materials.resize(shapes.size(), 0);
+  shapes.push_back(shape);
+  if (with_materials) materials.push_back(material);
+}
+
+}  // namespace
 
 bool SceneBuilder::add_polygon(std::span<const std::uint32_t> vertices,
                                std::span<const std::uint32_t> normals, std::uint32_t material) {
@@ -36,10 +48,11 @@ std::string SceneBuilder::too_large(std::size_t corners) {
 }
 
 void SceneBuilder::add_quadric(const Quadric& quadric, std::uint32_t material) {
-  const bool with_materials = material != 0 || !data_.quadric_materials.empty();
-  if (with_materials) data_.quadric_materials.resize(data_.quadrics.size(), 0);
-  data_.quadrics.push_back(quadric);
-  if (with_materials) data_.quadric_materials.push_back(material);
+  add(quadric, data_.quadrics, material, data_.quadric_materials);
+}
+
+void SceneBuilder::add_quadric(const GeneralQuadric& quadric, std::uint32_t material) {
+  add(quadric, data_.general_quadrics, material, data_.general_quadric_materials);
 }
 
 }  // namespace raymeter

@@ -28,6 +28,7 @@ class SceneBuilder {
   static std::string too_large(std::size_t corners);
 
   void add_quadric(const Quadric& quadric, std::uint32_t material = 0);
+  void add_quadric(const GeneralQuadric& quadric, std::uint32_t material = 0);
 
  private:
   SceneData& data_;

@@ -23,4 +23,8 @@ float decide(const Ray& ray, const Triangle& triangle);
 /// Sphere, open cylinder, open cone. Touching counts as a hit. A ray that lies in the surface misses.
 float decide(const Ray& ray, const Quadric& quadric);
 
+/// Any quadric inside a box. Touching counts as a hit, of the surface and of the box. A ray that lies in the
+/// surface misses, and so does every ray where the polynomial is a constant.
+float decide(const Ray& ray, const GeneralQuadric& quadric);
+
 }  // namespace raymeter

@@ -1,10 +1,8 @@
-#include <array>
 #include <optional>
+#include <span>
 
-#include "scenes/geometry/bounded.h"
+#include "scenes/geometry/clipped_roots.h"
 #include "scenes/geometry/decide.h"
-#include "scenes/geometry/exact.h"
-#include "scenes/geometry/rounding.h"
 
 namespace raymeter {
 namespace {
@@ -16,15 +14,16 @@ struct QuadricQuery {
   Number base_radius, widening;  ///< the radius at the base, and how much more it is at the apex
 };
 
-/// The points of a ray's line on a quadric: a t^2 + 2 b t + c = 0, of which those count where every clip has
-/// low <= p + t q <= high.
+/// The points of a ray's line on the quadric; of a sphere all count.
 template <class Number>
 struct ClippedQuadratic {
-  struct Clip {
-    Number p, q, low, high;
-  };
-  Number a, b, c, discriminant;
-  std::optional<Clip> clip;
+  Quadratic<Number> quadratic;
+  std::optional<Clip<Number>> clip;
+
+  std::span<const Clip<Number>> clips() const {
+    if (!clip) return {};
+    return {&*clip, 1};
+  }
 };
 
 template <class Number>
@@ -35,7 +34,7 @@ ClippedQuadratic<Number> on_line(QuadricKind kind, const QuadricQuery<Number>& q
     const auto moment = cross(d, w);
     const Number a = dot(d, d), b = dot(d, w);
     // Lagrange's identity: b^2 - a (w.w - r^2), without its cancellation far from the sphere.
-    return {a, b, dot(w, w) - r * r, a * r * r - dot(moment, moment), std::nullopt};
+    return {{a, b, dot(w, w) - r * r, a * r * r - dot(moment, moment)}, std::nullopt};
   }
   // At height h = (x . A) the surface has |x x A|^2 = L * radius^2, radius = r + widening * h / L, L = A . A.
   // Multiplied by L it is a polynomial, without a normalised axis.
@@ -45,7 +44,7 @@ ClippedQuadratic<Number> on_line(QuadricKind kind, const QuadricQuery<Number>& q
   const Number slope = query.widening * alpha, radius = l * r + query.widening * beta;
   const Number a = l * dot(u, u) - slope * slope, b = l * dot(u, v) - slope * radius,
                c = l * dot(v, v) - radius * radius;
-  return {a, b, c, b * b - a * c, typename ClippedQuadratic<Number>::Clip{beta, alpha, Number{}, l}};
+  return {{a, b, c, b * b - a * c}, Clip<Number>{beta, alpha, Number{}, l}};
 }
 
 // The first stage: doubles with running error bounds.
@@ -82,71 +81,15 @@ float decide_bounded(const Ray& ray, const Quadric& quadric) {
   const double size = std::max({greatest_component(w), greatest_component(axis), r, std::abs(widening)});
   const double scale = scale_to_one(size), direction_scale = scale_to_one(greatest_component(d));
   const double t_scale = direction_scale / scale;
-  const auto [a, b, c, discriminant, clip] = on_line(
+  const auto on_surface = on_line(
       quadric.kind, QuadricQuery<Bounded>{scaled(w, scale), scaled(d, direction_scale), scaled(axis, scale),
                                           scaled(r, scale), scaled(widening, scale)});
-
-  if (discriminant.certainly_negative()) return no_hit;
-  if (!discriminant.certainly_positive() || !a.certainly_not_zero()) return undecided;
-  // The root without cancellation, and the other by their product c / a.
-  const Bounded s = sqrt(discriminant), far = b.value < 0 ? s - b : -(b + s);
-  if (!far.certainly_not_zero()) return undecided;
-  float best = no_hit;
-  for (const Bounded& root : {far / a, c / far}) {
-    const float t = within(ray, root.value * t_scale, root.error * t_scale + Bounded::tiny);
-    if (t == no_hit) continue;
-    if (clip) {
-      const Bounded height = clip->p + root * clip->q;
-      const Bounded above_low = height - clip->low, below_high = clip->high - height;
-      if (above_low.certainly_negative() || below_high.certainly_negative()) continue;
-      if (!above_low.certainly_positive() || !below_high.certainly_positive()) return undecided;
-    }
-    if (std::isnan(t)) return undecided;
-    best = std::min(best, t);
-  }
-  return best;
+  return least_t(ray, on_surface.quadratic, on_surface.clips(), [&](const Bounded& root) {
+    return Bounded{root.value * t_scale, root.error * t_scale + Bounded::tiny};
+  });
 }
 
 // The second stage: integers.
-
-/// One root of a t^2 + 2 b t + c, known by comparison with fractions.
-class ExactRoot {
- public:
-  /// a >= 0 and a real root exists; a = 0: the linear equation's, whichever is asked for.
-  ExactRoot(const ClippedQuadratic<ExactInteger>& quadratic, bool greater)
-      : q_(quadratic), greater_(greater) {}
-
-  /// The sign of the root less h.
-  int against(const ExactFraction& h) const {
-    const ExactInteger &n = h.numerator, &m = h.denominator;
-    if (q_.a.sign() == 0) return -ExactInteger(2 * q_.b * n + q_.c * m).sign() * q_.b.sign();
-    const ExactInteger slope = q_.a * n + q_.b * m;
-    const int value = ExactInteger((slope + q_.b * m) * n + q_.c * m * m).sign();
-    // Between the roots; or outside, on the side that the slope tells; or at one of them, or at both.
-    if (value < 0) return greater_ ? 1 : -1;
-    if (value > 0) return -slope.sign();
-    return slope.sign() == 0 || (slope.sign() > 0) == greater_ ? 0 : -slope.sign();
-  }
-
-  bool satisfies(const ClippedQuadratic<ExactInteger>::Clip& clip) const {
-    return side(clip, clip.low) >= 0 && side(clip, clip.high) <= 0;
-  }
-
-  float nearest_float() const {
-    return rounded_by_comparison([this](std::int32_t m, int e) { return against(ExactFraction(m, e)); });
-  }
-
- private:
-  /// The sign of p + root * q - level.
-  int side(const ClippedQuadratic<ExactInteger>::Clip& clip, const ExactInteger& level) const {
-    const ExactInteger rest = level - clip.p;
-    if (clip.q.sign() == 0) return -rest.sign();
-    return clip.q.sign() > 0 ? against({rest, clip.q}) : -against({-rest, -clip.q});
-  }
-
-  const ClippedQuadratic<ExactInteger>& q_;
-  bool greater_;
-};
 
 [[gnu::noinline]] float decide_exactly(const Ray& ray, const Quadric& quadric) {
   ExactUnit unit;
@@ -155,18 +98,10 @@ class ExactRoot {
   unit.admit(quadric.apex_radius);
   const auto base = unit(quadric.base);
   const ExactInteger r = unit(quadric.base_radius);
-  auto quadratic = on_line(
+  const auto on_surface = on_line(
       quadric.kind, QuadricQuery<ExactInteger>{unit(ray.origin) - base, unit(ray.direction),
                                                unit(quadric.apex) - base, r, unit(quadric.apex_radius) - r});
-  auto& [a, b, c, discriminant, clip] = quadratic;
-  if (a.sign() == 0 ? b.sign() == 0 : discriminant.sign() < 0) return no_hit;
-  if (a.sign() < 0) a = -a, b = -b, c = -c;
-  float best = no_hit;
-  for (const bool greater : {false, true}) {
-    const ExactRoot root(quadratic, greater);
-    if (!clip || root.satisfies(*clip)) best = std::min(best, within(ray, root.nearest_float()));
-  }
-  return best;
+  return least_t(ray, on_surface.quadratic, on_surface.clips());
 }
 
 }  // namespace

@@ -17,6 +17,8 @@
 // vectors perpendicular to the axis are off by at most 48u of W or of the direction (13u R^2/A.A, R^2 <= 3
 // A.A, and some), so a, b and c by at most 110u of what Cauchy-Schwarz allows them to be; 2^-44 = 512u is
 // used. `tiny_length` pays for denormal inputs. Overflow makes the bounds infinite, and they reject nothing.
+//
+// General quadrics: filter_general_quadric.cpp.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -40,6 +42,8 @@ struct FilterRay {
 /// False only where decide(ray, triangle) is no_hit or greater than tmax.
 bool may_hit(const FilterRay& ray, const Triangle& triangle, float tmax);
 bool may_hit(const FilterRay& ray, const Quadric& quadric, float tmax);
+/// Not inline: an expensive primitive, kept out of the loops over cheap ones.
+bool may_hit(const FilterRay& ray, const GeneralQuadric& quadric, float tmax);
 
 inline FilterRay::FilterRay(const Ray& given) : ray(given) {
   // Where the direction is denormal the scaled one would not be.

@@ -1,19 +1,11 @@
 #include "scenes/geometry/primitives.h"
 
-#include <cfloat>
 #include <cmath>
 
 #include "scenes/geometry/rounding.h"
 
 namespace raymeter {
 namespace {
-
-/// The greatest float that is not above x and not denormal.
-float float_below(double x) {
-  const float nearest = rounded(x);
-  if (!(nearest > x)) return nearest;
-  return nearest == 0 ? -FLT_MIN : std::nextafter(nearest, -INFINITY);
-}
 
 /// Extends the box by [low, high]. The few roundings on the way there are below 2^-49 of `magnitude`.
 void extend_outward(Bounds& box, int axis, double low, double high, double magnitude) {

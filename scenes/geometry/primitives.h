@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "scenes/geometry/bounds.h"
@@ -26,8 +27,24 @@ struct Quadric {
   float apex_radius = 0;
 };
 
+/// The part inside `clip` of the surface
+///   q0 x^2 + q1 y^2 + q2 z^2 + q3 xy + q4 yz + q5 zx + q6 x + q7 y + q8 z + q9 = 0
+/// with q the coefficients and (x, y, z) relative to `centre`. Two-sided and closed: where the box cuts it,
+/// the cut belongs to it. geometry/quadric_shapes.h makes ellipsoids and the like.
+struct GeneralQuadric {
+  Vec3 centre;
+  std::array<float, 10> coefficients{};
+  Bounds clip;  ///< in the scene's coordinates
+};
+
 Bounds bounds_of(const Triangle& triangle);
 /// Contains every point of the surface, exactly; tight to a few ulps.
 Bounds bounds_of(const Quadric& quadric);
+/// Contains every point of the surface, exactly, and lies within the clip box; wider than the surface by
+/// about 1/1000 of it. Empty only if no ray can hit the quadric. Of numbers that are not finite: empty.
+Bounds bounds_of(const GeneralQuadric& quadric);
+
+/// Every number is finite.
+bool is_finite(const GeneralQuadric& quadric);
 
 }  // namespace raymeter

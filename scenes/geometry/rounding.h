@@ -24,6 +24,13 @@ inline float rounded(double t) {
   return static_cast<float>(t);
 }
 
+/// The greatest float that is not above x and not denormal.
+inline float float_below(double x) {
+  const float nearest = rounded(x);
+  if (!(nearest > x)) return nearest;
+  return nearest == 0 ? -FLT_MIN : std::nextafter(nearest, -INFINITY);
+}
+
 /// `rounded` of a real number that is known by comparison only: `compare(m, e)` is the sign of the number
 /// less m * 2^e, for integers |m| < 2^25. Bisects over the floats.
 template <class Compare>

@@ -199,8 +199,7 @@ inline void expect_brute_force(const Structure& structure, const Scene& scene, s
   for (std::size_t i = 0; i < rays.size(); ++i) {
     Hit expected;
     for (std::uint32_t p = 0; p < scene.primitive_count(); ++p) {
-      const float t =
-          scene.is_triangle(p) ? decide(rays[i], scene.triangle(p)) : decide(rays[i], scene.quadric(p));
+      const float t = scene.visit(p, [&](const auto& shape) { return decide(rays[i], shape); });
       if (t != no_hit && Hit{t, p} < expected) expected = {t, p};
     }
     const Ray& r = rays[i];

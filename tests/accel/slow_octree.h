@@ -80,8 +80,7 @@ class SlowOctree {
       for (const std::uint32_t primitive : node.primitives) {
         ++counters.tests;
         tested.insert(static_cast<int>(primitive));
-        const float t = scene_.is_triangle(primitive) ? decide(ray, scene_.triangle(primitive))
-                                                      : decide(ray, scene_.quadric(primitive));
+        const float t = scene_.visit(primitive, [&](const auto& shape) { return decide(ray, shape); });
         if (t != no_hit) best = std::min(best, Hit{t, primitive});
         if (best.found() && query == QueryKind::any) break;
       }

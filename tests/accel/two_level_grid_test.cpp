@@ -86,8 +86,7 @@ TEST(TwoLevelGrid, CountsLikeASlowWalker) {
         expected.empty_cell_steps += primitives.empty();
         for (const std::uint32_t p : primitives) {
           ++expected.tests;
-          const float t =
-              scene.is_triangle(p) ? decide(ray, scene.triangle(p)) : decide(ray, scene.quadric(p));
+          const float t = scene.visit(p, [&](const auto& shape) { return decide(ray, shape); });
           if (t != no_hit && Hit{t, p} < best) best = {t, p};
         }
       };

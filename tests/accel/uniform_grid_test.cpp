@@ -129,8 +129,7 @@ TEST(UniformGrid, CountsLikeASlowWalker) {
         for (std::uint32_t p = 0; p < scene.primitive_count(); ++p) {
           if (!slow_overlap(slow, cell.index, scene.bounds_of(p), space.margin)) continue;
           ++listed;
-          const float t =
-              scene.is_triangle(p) ? decide(ray, scene.triangle(p)) : decide(ray, scene.quadric(p));
+          const float t = scene.visit(p, [&](const auto& shape) { return decide(ray, shape); });
           if (t != no_hit && Hit{t, p} < best) best = {t, p};
         }
         expected.tests += listed;

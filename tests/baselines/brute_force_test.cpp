@@ -11,8 +11,7 @@ namespace {
 Hit decided(const Scene& scene, const Ray& ray) {
   Hit best;
   for (std::uint32_t primitive = 0; primitive < scene.primitive_count(); ++primitive) {
-    const float t = scene.is_triangle(primitive) ? decide(ray, scene.triangle(primitive))
-                                                 : decide(ray, scene.quadric(primitive));
+    const float t = scene.visit(primitive, [&](const auto& shape) { return decide(ray, shape); });
     if (t != no_hit && Hit{t, primitive} < best) best = {t, primitive};
   }
   return best;

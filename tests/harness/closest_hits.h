@@ -12,7 +12,7 @@ namespace raymeter {
 inline Hit closest_hit_by_brute_force(const Scene& scene, const Ray& ray) {
   Hit best;
   for (std::uint32_t i = 0; i < scene.primitive_count(); ++i) {
-    const float t = scene.is_triangle(i) ? decide(ray, scene.triangle(i)) : decide(ray, scene.quadric(i));
+    const float t = scene.visit(i, [&](const auto& shape) { return decide(ray, shape); });
     if (t != no_hit) best = std::min(best, Hit{t, i});
   }
   return best;

@@ -57,8 +57,8 @@ std::int64_t count_primary_hits(const Scene& scene, std::uint32_t width) {
       for (std::uint32_t x = column(r.left, -1); x <= column(r.right, 2); ++x) {
         const std::size_t ray = std::size_t{row} * (width + 1) + x;
         if (hit[ray]) continue;
-        hit[ray] = (scene.is_triangle(i) ? decide(batch.rays[ray], scene.triangle(i))
-                                         : decide(batch.rays[ray], scene.quadric(i))) != no_hit;
+        hit[ray] =
+            (scene.visit(i, [&](const auto& shape) { return decide(batch.rays[ray], shape); })) != no_hit;
       }
   }
   return std::ranges::count(hit, 1);

@@ -161,7 +161,8 @@ class SmallBvh final : public raymeter::PerRayStructure<SmallBvh> {
 
   // The t of the hit in the ray's interval, or no_hit. Quadrics are left to Raymeter.
   float intersect(const Ray& ray, const LeafItem& item) const {
-    if (!scene().is_triangle(item.primitive)) return raymeter::decide(ray, scene().quadric(item.primitive));
+    if (!scene().is_triangle(item.primitive))
+      return scene().visit(item.primitive, [&](const auto& shape) { return raymeter::decide(ray, shape); });
     const Vec3 p = cross(ray.direction, item.e2);
     const float determinant = dot(item.e1, p);
     if (determinant == 0) return raymeter::no_hit;

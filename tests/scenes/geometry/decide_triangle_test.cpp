@@ -117,8 +117,8 @@ TEST(DecideTriangle, WhatIsNoRayAndWhatIsNoTriangleMisses) {
   EXPECT_EQ(decide({{0, 0, 1}, -1, {0, -0.0f, 0}}, floor_at_1), no_hit);
   EXPECT_EQ(decide({{0, 0, 1}, -1, {0, 1e-40f, 0}}, floor_at_1), no_hit);
   EXPECT_EQ(decide({{-4, 0, 1}, 0, {1, 0, 0}}, floor_at_1), no_hit) << "coplanar";
-  EXPECT_EQ(decide(good, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}), no_hit);
-  EXPECT_EQ(decide(good, {{-1, 0, 1}, {0, 0, 1}, {5, 0, 1}}), no_hit);
+  EXPECT_EQ(decide(good, Triangle{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}), no_hit);
+  EXPECT_EQ(decide(good, Triangle{{-1, 0, 1}, {0, 0, 1}, {5, 0, 1}}), no_hit);
 }
 
 TEST(DecideTriangle, DoesNotDependOnTheUnitOfLength) {

@@ -6,6 +6,7 @@
 #include <cfloat>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "scenes/geometry/primitives.h"
 #include "scenes/geometry/ray.h"
@@ -164,6 +165,48 @@ inline float decide(const Ray& ray, const Quadric& quadric) {
     if (m < 0) n = -n, m = -m;
     const Integer h = height[0] * m + height[1] * n;
     return h >= 0 && h <= l * m;
+  });
+}
+
+/// From the polynomial's values at three points of the line.
+inline float decide(const Ray& ray, const GeneralQuadric& quadric) {
+  const Bounds& clip = quadric.clip;
+  if (!can_hit(ray) || !finite(quadric.centre) || !finite(clip.low) || !finite(clip.high)) return no_hit;
+  for (const float x : quadric.coefficients)
+    if (!std::isfinite(x)) return no_hit;
+  Point o = units(ray.origin), d = units(ray.direction), centre = units(quadric.centre),
+        low = units(clip.low), high = units(clip.high);
+  Integer one = units(1.0f);
+  Integer q[10];
+  for (int i = 0; i < 10; ++i) q[i] = units(quadric.coefficients[static_cast<std::size_t>(i)]);
+  // In the largest units that will do, as above.
+  const auto shrink = [](const std::vector<Integer*>& numbers) {
+    unsigned spare = 1000;
+    for (const Integer* x : numbers)
+      if (*x != 0) spare = std::min(spare, static_cast<unsigned>(lsb(abs(*x))));
+    for (Integer* x : numbers) *x = *x < 0 ? -Integer(-*x >> spare) : Integer(*x >> spare);
+  };
+  std::vector<Integer*> lengths{&one}, coefficients;
+  for (Point* v : {&o, &d, &centre, &low, &high})
+    for (int axis = 0; axis < 3; ++axis) lengths.push_back(&(*v)[axis]);
+  for (Integer& x : q) coefficients.push_back(&x);
+  shrink(lengths), shrink(coefficients);
+
+  const auto value = [&](const Point& p) -> Integer {
+    const Integer terms[] = {p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z,
+                             p.z * p.x, p.x * one, p.y * one, p.z * one, one * one};
+    Integer sum = 0;
+    for (int i = 0; i < 10; ++i) sum += q[i] * terms[i];
+    return sum;
+  };
+  const Integer before = value(o - centre - d), here = value(o - centre), after = value(o - centre + d);
+  return Roots(before + after - 2 * here, after - before, 2 * here).least(ray, [&](Integer n, Integer m) {
+    if (m < 0) n = -n, m = -m;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Integer place = o[axis] * m + d[axis] * n;
+      if (place < low[axis] * m || place > high[axis] * m) return false;
+    }
+    return true;
   });
 }
 

@@ -80,6 +80,25 @@ TEST(FilterQuadric, RejectsNothingThatDecideAccepts) {
   }
 }
 
+TEST(FilterGeneralQuadric, RejectsNothingThatDecideAccepts) {
+  for (const auto style : adversary::styles) {
+    Random random(15, unsigned(style));
+    const bool slow = style == adversary::Style::mixed_scales || style == adversary::Style::extremes;
+    Tally tally;
+    for (int i = 0; i < (slow ? 5000 : 30000); ++i) {
+      const GeneralQuadric quadric = adversary::general_quadric(random, style);
+      Ray ray = adversary::ray_towards(random, style, quadric);
+      if (random.below(4) == 0) ray.tnear = -no_hit;
+      const float t = decide(ray, quadric);
+      adversary::tempt_interval(random, ray, t);
+      const float tmax = tempting_tmax(random, t);
+      ASSERT_TRUE(tally.add(ray, quadric, tmax));
+      const FlushDenormals mode;
+      ASSERT_TRUE(tally.add(ray, quadric, tmax));
+    }
+  }
+}
+
 TEST(FilterTriangle, SparesDecideTheOrdinaryMisses) {
   Random random(3);
   Tally tally;
@@ -102,6 +121,18 @@ TEST(FilterQuadric, SparesDecideTheOrdinaryMisses) {
     ASSERT_TRUE(tally.add(Ray{origin, 0, direction, 0.5f}, quadric, 0.5f));
   }
   EXPECT_GT(tally.rejected, tally.passed) << tally.passed;
+}
+
+TEST(FilterGeneralQuadric, SparesDecideAlmostAllMisses) {
+  Random random(16);
+  Tally tally;
+  for (int i = 0; i < 20000; ++i) {
+    const GeneralQuadric quadric = adversary::general_quadric(random, adversary::Style::natural);
+    const Vec3 origin = adversary::point(random, adversary::Style::natural);
+    const Vec3 direction = adversary::point(random, adversary::Style::natural);
+    ASSERT_TRUE(tally.add(Ray{origin, 0, direction, 0.5f}, quadric, 0.5f));
+  }
+  EXPECT_GT(tally.rejected, 1000 * tally.passed) << tally.passed;
 }
 
 }  // namespace
