@@ -25,7 +25,8 @@ SceneGenerator two_scales_generator();  ///< two soups of different scale
 // In place of the three scenes, lost to us, of the paper that introduced the heuristic grid (Sakai, Watanabe,
 // Miyoshi, Fukuda, "A Method for Accelerating Ray Tracing by Optimizing Regular Spatial Subdivision"): as
 // many shapes of the same kinds, and within a few percent as many rays in a Whitted rendering at 320x240.
-SceneGenerator paper_hall_generator();   ///< depth 1: 137,353 rays
-SceneGenerator paper_chess_generator();  ///< depth 2: 157,928 rays
+SceneGenerator paper_still_life_generator();  ///< depth 4: 274,255 rays
+SceneGenerator paper_hall_generator();        ///< depth 1: 137,353 rays
+SceneGenerator paper_chess_generator();       ///< depth 2: 157,928 rays
 
 }  // namespace raymeter

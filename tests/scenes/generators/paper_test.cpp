@@ -23,6 +23,7 @@ struct PaperScene {
 };
 
 constexpr PaperScene paper_scenes[] = {
+    {"paper/1", 70, 4, 274255, 10248321169207798459u},
     {"paper/2", 58549, 1, 137353, 7018572378139220535u},
     {"paper/3", 13856, 2, 157928, 7810543438673043509u},
 };
@@ -45,6 +46,16 @@ TEST(PaperScenes, HaveThePapersNumberOfShapes) {
     EXPECT_EQ(scene.triangle_count(), paper.depth == 4 ? 0 : paper.shapes) << paper.name;
     EXPECT_THAT(scene.warnings(), testing::IsEmpty()) << paper.name;
   }
+}
+
+TEST(PaperScenes, TheFirstMixesKindsOfQuadrics) {
+  const Scene scene = open_scene("paper/1");
+  std::map<QuadricKind, int> kinds;
+  for (const Quadric& quadric : scene.quadrics()) ++kinds[quadric.kind];
+  EXPECT_GE(kinds[QuadricKind::sphere], 10);
+  EXPECT_GE(kinds[QuadricKind::cylinder], 5);
+  EXPECT_GE(kinds[QuadricKind::cone], 5);
+  EXPECT_GE(scene.general_quadrics().size(), 30u);
 }
 
 TEST(PaperScenes, CastThePapersNumberOfRays) {
