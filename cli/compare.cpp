@@ -19,10 +19,6 @@
 namespace raymeter {
 namespace {
 
-RayOrder parse_order(const std::string& text) {
-  return text == "scanline" ? RayOrder::scanline : text == "shuffled" ? RayOrder::shuffled : RayOrder::tiled;
-}
-
 std::vector<Spec> parse_all(const std::vector<std::string>& texts) {
   std::vector<Spec> specs;
   for (const std::string& text : texts)
@@ -34,12 +30,9 @@ ComparisonSettings settings_of(const CompareOptions& options) {
   ComparisonSettings settings;
   settings.structures = parse_all(options.structures);
   settings.ray_kinds = parse_all(options.rays);
+  settings.ray_files.assign(options.ray_files.begin(), options.ray_files.end());
   settings.baseline = parse_spec(options.baseline);
-  settings.batches.order = parse_order(options.order);
-  settings.batches.size = parse_size(options.size);
-  settings.batches.size.pixel_corners = options.pixels == "corners";
-  settings.batches.seed = options.seed;
-  if (!options.camera.empty()) settings.batches.camera = parse_camera(options.camera);
+  settings.batches = batch_settings(options.batches);
   settings.race.rounds = options.rounds;
   settings.race.threads = options.threads;
   settings.race.time_budget = options.time_budget;

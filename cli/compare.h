@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "accel/registry.h"
+#include "cli/batch_options.h"
 
 namespace raymeter {
 
@@ -12,16 +13,13 @@ struct CompareOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> structures;
   std::vector<std::string> rays;
+  std::vector<std::string> ray_files;
   std::string baseline = "embree";
   std::string out;
-  std::string size = "320x240";
-  std::string order = "tiled";
-  std::string pixels = "centres";
-  std::string camera;
+  BatchOptions batches;
   unsigned rounds = 5;
   double time_budget = 5;
   unsigned threads = 1;
-  std::uint64_t seed = 1;
   std::uint64_t memory_limit = 4'000'000'000;
 };
 

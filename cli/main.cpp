@@ -11,6 +11,7 @@
 #include "baselines/register_baselines.h"
 #include "cli/compare.h"
 #include "cli/list.h"
+#include "cli/rays.h"
 #include "cli/render.h"
 #include "harness/load_plugin.h"
 #include "scenes/base/error.h"
@@ -27,6 +28,28 @@ void add_plugins(CLI::App& command, std::vector<std::string>& plugins) {
                   "several times")
       ->type_name("FILE")
       ->allow_extra_args(false);
+}
+
+/// How batches of rays are made: the same for every command that makes any.
+void add_batch_options(CLI::App& command, raymeter::BatchOptions& o) {
+  command.add_option("--size", o.size, "Picture, in pixels")->type_name("WxH")->capture_default_str();
+  command.add_option("--order", o.order, "Order of the rays in a batch")
+      ->check(CLI::IsMember({"tiled", "scanline", "shuffled"}))
+      ->capture_default_str();
+  command
+      .add_option("--pixels", o.pixels,
+                  "Rays through pixel centres, or through the (W+1)x(H+1) corners\n"
+                  "as the SPD counts them")
+      ->check(CLI::IsMember({"centres", "corners"}))
+      ->capture_default_str();
+  command
+      .add_option("--camera", o.camera,
+                  "As from=0x-5x2:at=0x0x0:up=0x0x1:angle=45 (degrees, horizontal)\n"
+                  "[the scene's]")
+      ->type_name("CAMERA");
+  command.add_option("--seed", o.seed, "Seed of rays and samples")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53u))
+      ->capture_default_str();
 }
 
 CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
@@ -52,6 +75,12 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
                    "[primary shadow reflection diffuse]")
       ->type_name("KIND")
       ->allow_extra_args(false);
+  compare
+      ->add_option("--ray-file", o.ray_files,
+                   "Rays from a file that `raymeter rays` wrote; several times. Without\n"
+                   "-r these are the only rays")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   compare->add_option("--baseline", o.baseline, "What ratios are taken against")
       ->type_name("SPEC")
       ->capture_default_str();
@@ -60,21 +89,7 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
                    "Folder for records.jsonl, records.csv and environment.json; with\n"
                    "the records of a killed run in it, the run goes on from there")
       ->type_name("DIR");
-  compare->add_option("--size", o.size, "Picture, in pixels")->type_name("WxH")->capture_default_str();
-  compare->add_option("--order", o.order, "Order of the rays in a batch")
-      ->check(CLI::IsMember({"tiled", "scanline", "shuffled"}))
-      ->capture_default_str();
-  compare
-      ->add_option("--pixels", o.pixels,
-                   "Rays through pixel centres, or through the (W+1)x(H+1) corners\n"
-                   "as the SPD counts them")
-      ->check(CLI::IsMember({"centres", "corners"}))
-      ->capture_default_str();
-  compare
-      ->add_option("--camera", o.camera,
-                   "As from=0x-5x2:at=0x0x0:up=0x0x1:angle=45 (degrees, horizontal)\n"
-                   "[the scene's]")
-      ->type_name("CAMERA");
+  add_batch_options(*compare, o.batches);
   compare->add_option("--rounds", o.rounds, "Rounds of each race")
       ->check(CLI::Range(3u, 1000u))
       ->capture_default_str();
@@ -86,9 +101,6 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
       ->capture_default_str();
   compare->add_option("--threads", o.threads, "Threads that build and trace")
       ->check(CLI::Range(1u, 1024u))
-      ->capture_default_str();
-  compare->add_option("--seed", o.seed, "Seed of rays and samples")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53u))
       ->capture_default_str();
   compare
       ->add_option("--memory-limit", o.memory_limit,
@@ -104,6 +116,28 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
       "  raymeter compare bunny.ply -s grid:amount=0.25,0.5,1,2 -r primary --out results\n"
       "  raymeter compare soup:triangles=60000 -s tunable-grid:density=1,4,16 -s embree:query=1,16");
   return compare;
+}
+
+CLI::App* add_rays(CLI::App& app, raymeter::RaysOptions& o) {
+  CLI::App* rays = app.add_subcommand(
+      "rays", "Write a batch of rays to a file, for compare --ray-file and for other programs");
+  rays->add_option("scene", o.scene, "A file, or a generated scene, as for compare")
+      ->required()
+      ->type_name("SCENE");
+  rays->add_option("-r,--rays", o.kind,
+                   "Rays: primary shadow reflection diffuse ao random, or one\n"
+                   "generation of whitted")
+      ->type_name("KIND")
+      ->capture_default_str();
+  rays->add_option("-o,--output", o.out, "Replaced when it is there")->required()->type_name("FILE");
+  add_batch_options(*rays, o.batches);
+  rays->footer(
+      "The rays are those of compare with the same options, bit by bit. Exit status: 0, or 2 for bad\n"
+      "usage or input.\n\n"
+      "Examples:\n"
+      "  raymeter rays teapot.nff -r diffuse:samples=4 -o teapot.rays\n"
+      "  raymeter compare teapot.nff --ray-file teapot.rays");
+  return rays;
 }
 
 CLI::App* add_render(CLI::App& app, raymeter::RenderOptions& o) {
@@ -177,6 +211,8 @@ int main(int argc, char** argv) {
   raymeter::RenderOptions render;
   CLI::App* render_command = add_render(app, render);
   add_plugins(*render_command, plugins);
+  raymeter::RaysOptions rays;
+  const CLI::App* const rays_command = add_rays(app, rays);
   std::string what;
   CLI::App* list = app.add_subcommand("list", "Show what can be named: scenes, structures, rays, columns");
   list->add_option("what", what, "scenes, structures, rays or columns")
@@ -203,6 +239,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (render_command->parsed()) return raymeter::run_render(render, registry);
+    if (rays_command->parsed()) return raymeter::run_rays(rays, registry);
     return raymeter::run_compare(compare, registry);
   } catch (const raymeter::Error& error) {
     fmt::print(stderr, "raymeter: {}\n", error.what());

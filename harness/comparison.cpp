@@ -6,12 +6,12 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "accel/note.h"
 #include "harness/environment.h"
 #include "harness/grading.h"
 #include "harness/judged_batches.h"
+#include "harness/ray_file.h"
 #include "harness/ray_kinds.h"
 #include "harness/timed_build.h"
 #include "scenes/base/error.h"
@@ -37,11 +37,6 @@ const char* build_isa() {
 
 std::string hex(std::uint64_t hash) {
   return fmt::format("{:016x}", hash);
-}
-
-/// For what is not timed.
-unsigned all_cpus() {
-  return std::max(1u, std::thread::hardware_concurrency());
 }
 
 /// What is the same in all rows of a comparison.
@@ -70,11 +65,12 @@ struct Subject {
   std::uint64_t rays = 0, hash = 0;
   std::string query;
   RayOrder order = RayOrder::tiled;
+  bool from_file = false;
 };
 
 Subject subject_of(const RayBatch& batch) {
-  return {batch.name, batch.rays.size(), batch.hash, batch.query == QueryKind::any ? "any" : "closest",
-          batch.order};
+  return {batch.name,  batch.rays.size(), batch.hash, batch.query == QueryKind::any ? "any" : "closest",
+          batch.order, batch.from_file};
 }
 
 Subject sum_of(const BatchGroup& group) {
@@ -121,7 +117,7 @@ Record blank_record(const Context& context, const Subject& subject, const Argume
   r.rays = subject.rays;
   r.ray_hash = hex(subject.hash);
   r.threads = context.settings.race.threads;
-  r.seed = context.settings.batches.seed;
+  if (!subject.from_file) r.seed = context.settings.batches.seed;
   r.build_id = build;
   r.environment_id = environment_id();
   return r;
@@ -287,10 +283,24 @@ std::vector<Spec> structures_of(const ComparisonSettings& settings, const Regist
 
 std::vector<Arguments> ray_kinds_of(const ComparisonSettings& settings) {
   std::vector<Spec> specs = settings.ray_kinds;
-  if (specs.empty()) specs = {{"primary", {}}, {"shadow", {}}, {"reflection", {}}, {"diffuse", {}}};
+  if (specs.empty() && settings.ray_files.empty())
+    specs = {{"primary", {}}, {"shadow", {}}, {"reflection", {}}, {"diffuse", {}}};
   std::vector<Arguments> kinds;
   for (const Spec& spec : specs) kinds.push_back(ray_arguments(spec));
   return kinds;
+}
+
+std::vector<BatchGroup> make_batches(const Scene& scene, const Registry& registry,
+                                     const ComparisonSettings& settings, ComparisonObserver& observer) {
+  std::vector<RayBatch> from_files;  // first: a file that can't be used is to cost nothing
+  for (const auto& file : settings.ray_files) from_files.push_back(read_ray_file(file, scene));
+  BatchJudge judge(
+      scene, registry, settings.batches, settings.race.threads,
+      [&](std::string_view batch, std::size_t rays) { observer.reference_refuted(batch, rays); });
+  std::vector<BatchGroup> groups;
+  for (const Arguments& kind : ray_kinds_of(settings)) groups.push_back(judge.batches(kind));
+  for (RayBatch& rays : from_files) groups.push_back({{judge.judged(std::move(rays))}, {}});
+  return groups;
 }
 
 }  // namespace
@@ -318,13 +328,9 @@ void compare_structures(const Scene& scene, const Registry& registry, const Comp
     return registry.arguments(spec).canonical() == context.baseline;
   };
   if (std::ranges::none_of(specs, is_baseline)) specs.push_back(settings.baseline);
-  const std::vector<Arguments> kinds = ray_kinds_of(settings);
 
   observer.progress(0, 1, fmt::format("{}: rays and their true hits", scene.name()));
-  const auto reference = build_reference(registry, {scene, settings.race.threads});
-  std::vector<BatchGroup> groups = make_judged_batches(
-      scene, *reference, settings.batches, kinds,
-      [&](std::string_view batch, std::size_t rays) { observer.reference_refuted(batch, rays); });
+  std::vector<BatchGroup> groups = make_batches(scene, registry, settings, observer);
 
   const BuildInput input{scene, settings.race.threads, settings.memory_limit};
   std::size_t total = 0;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -17,7 +18,8 @@ namespace raymeter {
 /// What to compare on each scene.
 struct ComparisonSettings {
   std::vector<Spec> structures;  ///< none: every kind of the registry but brute-force, at its defaults
-  std::vector<Spec> ray_kinds;   ///< none: primary, shadow, reflection, diffuse
+  std::vector<Spec> ray_kinds;   ///< none, and no files: primary, shadow, reflection, diffuse
+  std::vector<std::filesystem::path> ray_files;  ///< further batches, made for the scene (ray_file.h)
   Spec baseline{"embree", {}};
   BatchSettings batches;
   RaceSettings race;
@@ -49,8 +51,8 @@ class ComparisonObserver {
 /// Compares the structures on one scene, on identical batches, and hands a record for each structure and
 /// batch to the observer, as soon as it is known. The baseline gets rows of its own (raced against itself:
 /// the floor of the method), whether it is among the structures or not. A structure that can't be built
-/// becomes records that say why; the others go on. Throws Error as `check` does, before anything is
-/// measured.
+/// becomes records that say why; the others go on. Throws Error as `check` does, and for ray files that are
+/// damaged or of another scene, before anything is measured.
 void compare_structures(const Scene& scene, const Registry& registry, const ComparisonSettings& settings,
                         ComparisonObserver& observer);
 

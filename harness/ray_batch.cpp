@@ -50,9 +50,9 @@ Vec3d random_bounce(const Vec3d& normal, Random& random) {
 RayBatch begin(const Arguments& kind, RayOrder order) {
   RayBatch batch;
   batch.name = kind.canonical();
-  batch.kind = kind.name();
   batch.query = find_ray_kind(kind.name()).query.value();
   batch.order = order;
+  batch.coherent = order != RayOrder::shuffled && (kind.name() == "primary" || kind.name() == "shadow");
   return batch;
 }
 

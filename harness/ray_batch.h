@@ -15,15 +15,15 @@ namespace raymeter {
 /// Rays that every structure gets, unchanged.
 struct RayBatch {
   std::string name;  ///< canonical spec of the kind: "primary", "ao:length=0.05:samples=1", ...; of random,
-                     ///< with the count that there is, not 0
-  std::string kind;  ///< primary, shadow, reflection, diffuse, ao, random; whitted beyond depth 1
+                     ///< with the count that there is, not 0; of a file, what that says, and "from FILE"
   QueryKind query = QueryKind::closest;
   RayOrder order = RayOrder::tiled;
+  bool coherent = false;   ///< neighbours in the array are neighbours in space
+  bool from_file = false;  ///< harness/ray_file.h
   std::vector<Ray> rays;
   std::uint64_t hash = 0;  ///< of the rays, in order: the same on every machine
 
-  bool coherent() const { return order != RayOrder::shuffled && (kind == "primary" || kind == "shadow"); }
-  BatchView view() const { return {rays, query, order, coherent(), 0}; }
+  BatchView view() const { return {rays, query, order, coherent, 0}; }
 };
 
 /// Of rays in order: RayBatch::hash.

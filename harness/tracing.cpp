@@ -9,6 +9,7 @@
 #include <bit>
 #include <ctime>
 #include <mutex>
+#include <thread>
 
 #include "scenes/base/float_mode.h"
 #include "scenes/base/hash.h"
@@ -83,6 +84,10 @@ std::uint64_t count_hits(const BatchAnswers& answers) {
   return static_cast<std::uint64_t>(
       std::count_if(answers.hits.begin(), answers.hits.end(), [](const Hit& hit) { return hit.found(); }) +
       std::count(answers.occluded.begin(), answers.occluded.end(), std::uint8_t{1}));
+}
+
+unsigned all_cpus() {
+  return std::max(1u, std::thread::hardware_concurrency());
 }
 
 double trace(const Structure& structure, const BatchView& batch, BatchAnswers& answers, unsigned threads,

@@ -24,6 +24,9 @@ std::uint64_t hit_hash(const BatchAnswers& answers);
 /// How many rays hit something.
 std::uint64_t count_hits(const BatchAnswers& answers);
 
+/// Threads for what is not timed: one for each CPU.
+unsigned all_cpus();
+
 /// The most rays in one timed call of a structure. Batches on several threads are cut finer, so that all have
 /// work.
 inline constexpr std::size_t chunk_rays = std::size_t{1} << 16u;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <thread>
 
 #include "accel/primitive_test.h"
 #include "baselines/brute_force.h"
@@ -86,7 +85,7 @@ BatchAnswers brute_force(const Scene& scene, std::span<const Ray> rays, QueryKin
     answers.occluded.resize(rays.size());
   const auto structure = brute_force_kind().build(Arguments({"brute-force", {}}, {}), {scene});
   // Finer than the chunks of tracing.h: a ray takes so long that a hundred are worth sharing.
-  const std::size_t cpus = std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t cpus = all_cpus();
   const std::size_t group = std::clamp<std::size_t>(rays.size() / (4 * cpus), 1, 128);
   tbb::parallel_for(std::size_t{0}, (rays.size() + group - 1) / group, [&](std::size_t index) {
     const std::size_t first = index * group, count = std::min(group, rays.size() - first);

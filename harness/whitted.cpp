@@ -109,8 +109,8 @@ class Tracer {
     WhittedBatch batch;
     batch.purpose = purpose;
     batch.depth = depth;
-    // What later rays begin from is scattered: they are not of the kinds that are coherent.
-    batch.rays.kind = depth == 1 ? name_of(purpose) : "whitted";
+    // What later rays begin from is scattered.
+    batch.rays.coherent = depth == 1 && settings_.order != RayOrder::shuffled;
     batch.rays.name =
         purpose == RayPurpose::primary ? name_of(purpose) : fmt::format("{}-{}", name_of(purpose), depth);
     batch.rays.query = purpose == RayPurpose::shadow ? QueryKind::any : QueryKind::closest;

@@ -55,6 +55,12 @@ std::string brief_spec(const std::string& spec, const Registry& registry) {
   return registry.arguments(parse_spec(spec)).brief();
 }
 
+/// The kind less the parameters that are at their default. Of rays from a file the batch's name says more,
+/// and their kind may be anybody's.
+std::string brief_batch(const std::string& batch) {
+  return batch.find(' ') == std::string::npos ? ray_arguments(parse_spec(batch)).brief() : batch;
+}
+
 /// A label that does not fit its column has a line of its own above the numbers.
 std::string row(const Record& record, const std::string& label) {
   auto milliseconds = record.build_s, megabytes = Record::Number{};
@@ -102,7 +108,7 @@ std::string comparison_table(std::span<const Record> records, const Registry& re
       same->second += "; " + what;
   };
   for (const std::string& canonical : batches) {
-    const std::string batch = ray_arguments(parse_spec(canonical)).brief();
+    const std::string batch = brief_batch(canonical);
     bool titled = false;
     for (const Record& record : records) {
       if (record.batch != canonical) continue;

@@ -19,10 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__)  // several times slower and larger
 constexpr std::uint64_t most_bytes = 4'000'000'000;
+constexpr Limits limits{.cpu_seconds = 100, .wall_seconds = 280};
 #else
 constexpr std::uint64_t most_bytes = 1'000'000'000;
+constexpr Limits limits;
 #endif
 
 const fs::path project_folder = fs::path(RAYMETER_TEST_DATA) / "hostile";
@@ -47,7 +49,7 @@ class HostileFile : public testing::TestWithParam<HostileRow> {
   }
 
   void expect_refused() const {
-    const LimitedRun run = run_limited({"compare", path_.string(), "-s", "grid"});
+    const LimitedRun run = run_limited({"compare", path_.string(), "-s", "grid"}, limits);
     expect_within_limits(run);
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(lines_of(run.text).size(), 1u) << run.text;
@@ -80,7 +82,7 @@ class HostileFile : public testing::TestWithParam<HostileRow> {
                                      "--out",
                                      (folder_ / structure).string()};
     if (expected.camera) command.insert(command.end(), {"--camera", expected.camera});
-    const LimitedRun run = run_limited(command);
+    const LimitedRun run = run_limited(command, limits);
     expect_within_limits(run);
     EXPECT_EQ(run.status, 0) << run.text;
     const auto rows = read_csv(folder_ / structure / "records.csv");

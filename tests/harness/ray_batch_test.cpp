@@ -82,10 +82,9 @@ TEST(RayBatch, CountsNamesAndQueries) {
   const RayBatch ao = tiled().secondary("ao:samples=2");
   EXPECT_EQ(ao.rays.size(), 2 * found);
   EXPECT_EQ(ao.name, "ao:length=0.05:samples=2");
-  EXPECT_EQ(ao.kind, "ao");
   EXPECT_EQ(ao.query, QueryKind::any);
-  EXPECT_FALSE(ao.coherent());
-  EXPECT_TRUE(tiled().secondary("shadow").coherent());
+  EXPECT_FALSE(ao.coherent);
+  EXPECT_TRUE(tiled().secondary("shadow").coherent);
   EXPECT_EQ(tiled().secondary("primary").hash, tiled().batch.hash);
   for (const RayKind& kind : ray_kinds()) {
     if (!kind.query) continue;  // whitted makes several batches

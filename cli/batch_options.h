@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "harness/ray_batch.h"
+
+namespace raymeter {
+
+/// How batches are made, as text; the same for every command that makes any. Defaults as --help says.
+struct BatchOptions {
+  std::string size = "320x240";
+  std::string order = "tiled";
+  std::string pixels = "centres";
+  std::string camera;
+  std::uint64_t seed = 1;
+};
+
+/// Throws Error on bad options.
+BatchSettings batch_settings(const BatchOptions& options);
+
+}  // namespace raymeter
