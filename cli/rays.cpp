@@ -26,10 +26,11 @@ int run_rays(const RaysOptions& options, const Registry& registry) {
   });
   const BatchGroup group = judge.batches(kind);
   if (group.batches.size() > 1) {
-    std::vector<std::string> names;
-    for (const JudgedBatch& part : group.batches) names.push_back(part.rays.name);
-    throw Error(fmt::format("{}: these are {} batches, and a file holds one; ask for one of: {}",
-                            kind.brief(), names.size(), fmt::join(names, ", ")));
+    std::vector<std::string> parts;
+    for (const JudgedBatch& part : group.batches)
+      parts.push_back(ray_arguments(parse_spec(part.rays.name)).text("rays"));
+    throw Error(fmt::format("{}: these are {} batches, and a file holds one; add rays= and one of: {}",
+                            kind.brief(), parts.size(), fmt::join(parts, ", ")));
   }
   const RayBatch& batch = group.batches.front().rays;
   write_ray_file(options.out, batch, scene);

@@ -24,7 +24,7 @@ std::span<const RayKind> ray_kinds() {
        QueryKind::closest,
        {{"count", ParameterType::integer, "0", "how many; 0: as many as primary rays", 0, 0x1p28}}},
       {"whitted",
-       "those of a recursive ray tracer, generation by generation, and all together",
+       "those of a recursive ray tracer, by generation and together",
        {},
        {{"depth", ParameterType::integer, "5", "deepest generation; eye rays are the first", 1, 64},
         {"rays", ParameterType::text, "all",

@@ -20,8 +20,8 @@ inline constexpr std::size_t ray_purposes = 4;
 /// "primary", "reflection", "refraction", "shadow".
 const char* name_of(RayPurpose purpose);
 
-/// The rays of one generation and purpose, or a part of them. `rays.kind` and `rays.name` say the purpose,
-/// the name also the depth of all but primary rays: "reflection-2", "shadow-1" (from surfaces that rays of
+/// The rays of one generation and purpose, or a part of them. `rays.name` says the purpose, and the
+/// depth of all but primary rays: "reflection-2", "shadow-1" (from surfaces that rays of
 /// depth 1 hit).
 struct WhittedBatch {
   RayPurpose purpose = RayPurpose::primary;

@@ -83,7 +83,7 @@ TEST_F(Rays, BadUsageIsOneLineAndStatusTwo) {
       {"rays soup -r nosuch -o " + at("x"), "no rays 'nosuch'"},
       {"rays soup -r ao:length=1,2 -o " + at("x"), "ao:length=1,2"},
       {"rays soup -r whitted:depth=2 --size 8x8 -o " + at("x"),
-       "batches, and a file holds one; ask for one of: primary, shadow-1"},
+       "4 batches, and a file holds one; add rays= and one of: primary, shadow-1"},
       {"rays soup:triangles=9 -o " + at("no/x"), "can't be written"},
       {"rays soup:triangles=9 -o /dev/null", "can't be written"},
       {"compare " + scene + " --ray-file " + at("none.rays"), "none.rays: no such file"},

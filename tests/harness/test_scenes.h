@@ -27,7 +27,7 @@ inline Scene random_scene(std::uint32_t triangles, std::uint64_t seed = 1) {
 inline RayBatch random_batch(std::size_t rays, QueryKind query, std::uint64_t seed = 2) {
   Random random(seed);
   RayBatch batch;
-  batch.name = batch.kind = "random";
+  batch.name = "random";
   batch.query = query;
   batch.order = RayOrder::shuffled;
   for (std::size_t i = 0; i < rays; ++i) {
