@@ -8,11 +8,10 @@
 #include <optional>
 
 #include "accel/note.h"
+#include "harness/checked_answers.h"
 #include "harness/environment.h"
-#include "harness/grading.h"
 #include "harness/judged_batches.h"
-#include "harness/ray_file.h"
-#include "harness/ray_kinds.h"
+#include "harness/race.h"
 #include "harness/timed_build.h"
 #include "scenes/base/error.h"
 #include "scenes/base/hash.h"
@@ -196,33 +195,21 @@ void add_grades(Record& r, const Grades& grades) {
 }
 
 /// What was measured of one structure on one batch, or on several together.
-struct Measurement {
+struct Measurement : CheckedAnswers {
   RaceResult race;
-  CounterTotals counters;
-  Grades grades;
-  std::uint64_t hits = 0, hit_hash = 0, reference_hash = 0, brute_forced = 0;
-  bool consistent = true;  ///< the counted pass gave the answers of the timed one
+  std::uint64_t reference_hash = 0, brute_forced = 0;
 };
 
-/// Races, counts and grades one built structure on one batch; the answers are not kept.
+/// Races and checks one built structure on one batch; the answers are not kept.
 Measurement measure(const Context& context, Structure& baseline, Structure& structure, Answers policy,
                     JudgedBatch& batch, ComparisonObserver& observer) {
-  const RayBatch& rays = batch.rays;
   Measurement m;
-  m.race = race(baseline, structure, rays, context.settings.race);
+  m.race = race(baseline, structure, batch.rays, context.settings.race);
   m.race.baseline.answers = {};
   const BatchAnswers answers = std::exchange(m.race.structure.answers, {});
-  m.hits = count_hits(answers);
-  m.hit_hash = hit_hash(answers);
-  if (structure.counts()) {
-    BatchAnswers counted;
-    m.counters = count(structure, rays.view(), counted, all_cpus());
-    m.consistent = counted == answers;
-  }
-  const Row row{answers, policy};
-  if (const std::size_t refuted = settle_disputes(context.scene, rays, row, batch.truth))
-    observer.reference_refuted(rays.name, refuted);
-  m.grades = grade(context.scene, rays, batch.truth, row);
+  static_cast<CheckedAnswers&>(m) =
+      check_answers(context.scene, structure, {answers, policy}, batch,
+                    [&](std::string_view name, std::size_t rays) { observer.reference_refuted(name, rays); });
   m.reference_hash = hit_hash(batch.truth.answers);
   m.brute_forced = batch.truth.brute_forced;
   return m;
@@ -273,50 +260,20 @@ Record finished_record(const Context& context, Record r, const Built& built, con
   return r;
 }
 
-std::vector<Spec> structures_of(const ComparisonSettings& settings, const Registry& registry) {
-  std::vector<Spec> specs = settings.structures;
-  if (specs.empty())
-    for (const StructureKind& kind : registry.kinds())
-      if (kind.name != "brute-force") specs.push_back({kind.name, {}});
-  return specs;
-}
-
-std::vector<Arguments> ray_kinds_of(const ComparisonSettings& settings) {
-  std::vector<Spec> specs = settings.ray_kinds;
-  if (specs.empty() && settings.ray_files.empty())
-    specs = {{"primary", {}}, {"shadow", {}}, {"reflection", {}}, {"diffuse", {}}};
-  std::vector<Arguments> kinds;
-  for (const Spec& spec : specs) kinds.push_back(ray_arguments(spec));
-  return kinds;
-}
-
-std::vector<BatchGroup> make_batches(const Scene& scene, const Registry& registry,
-                                     const ComparisonSettings& settings, ComparisonObserver& observer) {
-  std::vector<RayBatch> from_files;  // first: a file that can't be used is to cost nothing
-  for (const auto& file : settings.ray_files) from_files.push_back(read_ray_file(file, scene));
-  BatchJudge judge(
-      scene, registry, settings.batches, settings.race.threads,
-      [&](std::string_view batch, std::size_t rays) { observer.reference_refuted(batch, rays); });
-  std::vector<BatchGroup> groups;
-  for (const Arguments& kind : ray_kinds_of(settings)) groups.push_back(judge.batches(kind));
-  for (RayBatch& rays : from_files) groups.push_back({{judge.judged(std::move(rays))}, {}});
-  return groups;
-}
-
 }  // namespace
 
-void check(const ComparisonSettings& settings, const Registry& registry) {
-  for (const Spec& spec : settings.structures) registry.arguments(spec);
-  registry.arguments(settings.baseline);
-  for (const Spec& kind : settings.ray_kinds) ray_arguments(kind);
+bool is_fault(const Grades& grades, const StructureKind& kind) {
+  return !kind.tolerated && (grades.wrong > 0 || grades.unexplained > 0 ||
+                             (kind.answers == Answers::exact && grades.not_given > 0));
 }
 
 bool is_fault(const Record& record, const StructureKind& kind) {
   if (record.status == "inconsistent") return true;
-  if (kind.tolerated) return false;
-  const auto some = [](const Record::Count& count) { return count.value_or(0) > 0; };
-  return record.status != "ok" || some(record.wrong) || some(record.unexplained) ||
-         (kind.answers == Answers::exact && some(record.not_given));
+  Grades grades;
+  grades.wrong = record.wrong.value_or(0);
+  grades.unexplained = record.unexplained.value_or(0);
+  grades.not_given = record.not_given.value_or(0);
+  return (record.status != "ok" && !kind.tolerated) || is_fault(grades, kind);
 }
 
 void compare_structures(const Scene& scene, const Registry& registry, const ComparisonSettings& settings,
@@ -330,7 +287,9 @@ void compare_structures(const Scene& scene, const Registry& registry, const Comp
   if (std::ranges::none_of(specs, is_baseline)) specs.push_back(settings.baseline);
 
   observer.progress(0, 1, fmt::format("{}: rays and their true hits", scene.name()));
-  std::vector<BatchGroup> groups = make_batches(scene, registry, settings, observer);
+  std::vector<BatchGroup> groups = make_batches(
+      scene, registry, settings,
+      [&](std::string_view batch, std::size_t rays) { observer.reference_refuted(batch, rays); });
 
   const BuildInput input{scene, settings.race.threads, settings.memory_limit};
   std::size_t total = 0;

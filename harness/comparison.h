@@ -1,38 +1,21 @@
 #pragma once
-#include <cstdint>
-#include <filesystem>
-#include <limits>
-#include <string>
+#include <cstddef>
 #include <string_view>
-#include <vector>
 
 #include "accel/registry.h"
-#include "harness/race.h"
-#include "harness/ray_batch.h"
+#include "harness/comparison_settings.h"
+#include "harness/grading.h"
 #include "harness/record.h"
-#include "scenes/base/spec.h"
 #include "scenes/scene.h"
 
 namespace raymeter {
-
-/// What to compare on each scene.
-struct ComparisonSettings {
-  std::vector<Spec> structures;  ///< none: every kind of the registry but brute-force, at its defaults
-  std::vector<Spec> ray_kinds;   ///< none, and no files: primary, shadow, reflection, diffuse
-  std::vector<std::filesystem::path> ray_files;  ///< further batches, made for the scene (ray_file.h)
-  Spec baseline{"embree", {}};
-  BatchSettings batches;
-  RaceSettings race;
-  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  ///< bytes, for each structure
-};
-
-/// Throws Error when a structure, the baseline or a ray kind does not exist or has other parameters.
-void check(const ComparisonSettings& settings, const Registry& registry);
 
 /// Whether a record shows its structure to be at fault: it could not be built, its counted pass differs from
 /// the timed one, or an answer is wrong, unexplained or, of an exact structure, not given. Of a `tolerated`
 /// kind only the second is.
 bool is_fault(const Record& record, const StructureKind& kind);
+/// The same of answers alone.
+bool is_fault(const Grades& grades, const StructureKind& kind);
 
 /// Is told of everything that happens during a comparison.
 class ComparisonObserver {

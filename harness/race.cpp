@@ -1,41 +1,15 @@
 #include "harness/race.h"
 
-#include <sched.h>
-#include <tbb/info.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+
+#include "harness/pinned_thread.h"
 
 namespace raymeter {
 namespace {
 
 constexpr double slow_pass_seconds = 1;
-
-/// Holds the calling thread on the CPU it is running on, while it lives. Harmless where that is not allowed.
-class PinnedThread {
- public:
-  PinnedThread() {
-    // TBB counts the CPUs that it may use only once: it must not do so while this thread has but one.
-    tbb::info::default_concurrency();
-    const int cpu = sched_getcpu();
-    if (cpu < 0 || cpu >= CPU_SETSIZE || sched_getaffinity(0, sizeof saved_, &saved_) != 0) return;
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(cpu, &one);
-    pinned_ = sched_setaffinity(0, sizeof one, &one) == 0;
-  }
-  ~PinnedThread() {
-    if (pinned_) sched_setaffinity(0, sizeof saved_, &saved_);
-  }
-  PinnedThread(const PinnedThread&) = delete;
-  PinnedThread& operator=(const PinnedThread&) = delete;
-  bool pinned() const { return pinned_; }
-
- private:
-  cpu_set_t saved_{};
-  bool pinned_ = false;
-};
 
 /// A clock may stand still over a handful of rays.
 constexpr double shortest_seconds = 1e-9;
