@@ -46,18 +46,27 @@ void expect_same(const Rendering& a, const Rendering& b) {
 
 class RenderingOf : public testing::TestWithParam<const char*> {};
 
-TEST_P(RenderingOf, IsTheSameWithEveryExactStructure) {
-  const std::string path = shared_scene(std::string("scenes/spd/small/") + GetParam() + ".nff");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
-  const Scene scene = open_scene(path);
+/// With every exact structure the same as with brute force.
+void check_structures(const Scene& scene, const RenderSettings& settings) {
   const Registry registry = all_structures();
-  const RenderSettings settings{.size = {40, 30}, .depth = 5, .threads = 2};
   const Rendering truth = render(scene, *registry.build({"brute-force", {}}, {scene}), settings);
   for (const StructureKind& kind : registry.kinds()) {
     if (kind.answers != Answers::exact || kind.name == "brute-force") continue;
     SCOPED_TRACE(kind.name);
     expect_same(truth, render(scene, *registry.build({kind.name, {}}, {scene}), settings));
   }
+}
+
+TEST_P(RenderingOf, IsTheSameWithEveryExactStructure) {
+  const std::string path = shared_scene(std::string("scenes/spd/small/") + GetParam() + ".nff");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
+  check_structures(open_scene(path), {.size = {40, 30}, .depth = 5, .threads = 2});
+}
+
+TEST(RenderingOfThePapersScenes, IsTheSameWithEveryExactStructure) {
+  check_structures(open_scene("paper/1"), {.size = {120, 90}, .depth = 4, .threads = 2});
+  check_structures(open_scene("paper/2"), {.size = {32, 24}, .depth = 1, .threads = 2});
+  check_structures(open_scene("paper/3"), {.size = {48, 36}, .depth = 2, .threads = 2});
 }
 
 INSTANTIATE_TEST_SUITE_P(SpdSmall, RenderingOf,

@@ -1,4 +1,5 @@
-// Rays of the SPD scenes, counted by the SPD's rules, against the counts of an independent tracer.
+// Rays that renderings cast: on the SPD scenes, by the SPD's rules, against the counts of an independent
+// tracer; on the paper's scenes against the paper's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,17 +28,18 @@ struct Expected {
 class WhittedCounts : public testing::TestWithParam<Expected> {};
 class WhittedCountsSlow : public WhittedCounts {};
 
-void check(const Expected& expected) {
-  const std::string path = std::string(RAYMETER_SHARED_DATA) + "/scenes/" + expected.file;
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
-  const Scene scene = open_scene(path);
+Rendering render_by_bvh(const Scene& scene, const PictureSize& size, unsigned depth) {
   Registry registry;
   register_baselines(registry);
   const auto structure = registry.build({"counted-bvh", {}}, {scene});
-  const Rendering rendering = render(scene, *structure,
-                                     {.size = {expected.width, expected.width, true},
-                                      .depth = 5,
-                                      .threads = std::thread::hardware_concurrency()});
+  return render(scene, *structure,
+                {.size = size, .depth = depth, .threads = std::thread::hardware_concurrency()});
+}
+
+void check(const Expected& expected) {
+  const std::string path = std::string(RAYMETER_SHARED_DATA) + "/scenes/" + expected.file;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
+  const Rendering rendering = render_by_bvh(open_scene(path), {expected.width, expected.width, true}, 5);
   EXPECT_EQ(rendering.total(RayPurpose::primary).rays, (expected.width + 1) * (expected.width + 1));
   EXPECT_NEAR(double(rendering.total(RayPurpose::primary).hits), expected.primary_hits, 3);
   const auto near = [&](RayPurpose purpose, double rays) {
@@ -102,6 +104,30 @@ INSTANTIATE_TEST_SUITE_P(
                     Expected{"quadrics/teapot12_stadium500.nff", 512, 263169, 641241, 342186, 0},
                     Expected{"quadrics/waterbox_ballstick.nff", 512, 39339, 74419, 27905, 0}),
     name_of);
+
+/// What the paper says of a scene's rendering at 320x240, and what ours casts.
+struct PaperRendering {
+  const char* scene;
+  unsigned depth;
+  double papers_rays;
+  std::uint64_t hits, shadow, reflected, refracted;
+};
+
+TEST(PaperScenes, CastThePapersNumberOfRays) {
+  for (const PaperRendering& paper : {PaperRendering{"paper/1", 4, 274255, 40710, 86157, 84324, 30827},
+                                      PaperRendering{"paper/2", 1, 137353, 67514, 59409, 0, 0},
+                                      PaperRendering{"paper/3", 2, 157928, 54139, 59802, 20481, 0}}) {
+    SCOPED_TRACE(paper.scene);
+    const Rendering rendering = render_by_bvh(open_scene(paper.scene), {320, 240}, paper.depth);
+    EXPECT_EQ(rendering.total(RayPurpose::primary).hits, paper.hits);
+    EXPECT_EQ(rendering.total(RayPurpose::shadow).rays, paper.shadow);
+    EXPECT_EQ(rendering.total(RayPurpose::reflection).rays, paper.reflected);
+    EXPECT_EQ(rendering.total(RayPurpose::refraction).rays, paper.refracted);
+    double rays = 0;
+    for (const RayCount& count : rendering.rays) rays += static_cast<double>(count.rays);
+    EXPECT_NEAR(rays, paper.papers_rays, 0.1 * paper.papers_rays);
+  }
+}
 
 }  // namespace
 }  // namespace raymeter
