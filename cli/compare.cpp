@@ -6,10 +6,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <thread>
 
 #include "cli/arguments.h"
+#include "cli/pictures.h"
 #include "harness/comparison.h"
 #include "harness/environment.h"
+#include "harness/ray_kinds.h"
 #include "reports/comparison_recorder.h"
 #include "reports/comparison_table.h"
 #include "reports/record_files.h"
@@ -43,11 +46,23 @@ ComparisonSettings settings_of(const CompareOptions& options) {
   return settings;
 }
 
+/// What the run's pictures show: the rays of `whitted` in it, else those of its default depth.
+RenderSettings picture_settings(const ComparisonSettings& settings) {
+  RenderSettings pictures{.size = settings.batches.size, .camera = settings.batches.camera};
+  pictures.threads = std::max(1u, std::thread::hardware_concurrency());  // nothing is timed
+  for (const Spec& kind : settings.ray_kinds)
+    if (kind.name == "whitted") pictures.depth = static_cast<unsigned>(ray_arguments(kind).integer("depth"));
+  return pictures;
+}
+
 }  // namespace
 
 int run_compare(const CompareOptions& options, const Registry& registry) {
   const ComparisonSettings settings = settings_of(options);
   check(settings, registry);
+  if (options.pictures && options.out.empty())
+    throw Error("--pictures needs a folder to write to: --out DIR");
+  if (options.pictures) check_picture(settings.batches.size);
 
   const std::filesystem::path folder = options.out;
   std::optional<RecordLog> log;
@@ -70,6 +85,12 @@ int run_compare(const CompareOptions& options, const Registry& registry) {
       fmt::print("{}\n", comparison_table(recorder.take_records(), registry));
       std::fflush(stdout);
       if (log) write_csv(folder / "records.csv", log->records());
+      // Scenes of different folders may have the same name.
+      if (options.pictures)
+        write_pictures(
+            folder / "pictures" / fmt::format("{}-{:08x}", as_file_name(scene.name()), scene.hash() >> 32u),
+            scene, structures_of(settings, registry), picture_settings(settings), settings.memory_limit,
+            registry);
     } catch (const Error& error) {
       // One bad scene does not keep the others from being compared.
       recorder.take_records();
@@ -77,6 +98,7 @@ int run_compare(const CompareOptions& options, const Registry& registry) {
       all_opened = false;
     }
   }
+  if (options.pictures) fmt::print("pictures in {}\n", (folder / "pictures").string());
   if (log) fmt::print("{} records in {}\n", log->records().size(), (folder / "records.csv").string());
   return !all_opened ? 2 : recorder.all_right() ? 0 : 1;
 }

@@ -16,6 +16,7 @@ struct CompareOptions {
   std::vector<std::string> ray_files;
   std::string baseline = "embree";
   std::string out;
+  bool pictures = false;
   BatchOptions batches;
   unsigned rounds = 5;
   double time_budget = 5;

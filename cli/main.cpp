@@ -89,6 +89,9 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
                    "Folder for records.jsonl, records.csv and environment.json; with\n"
                    "the records of a killed run in it, the run goes on from there")
       ->type_name("DIR");
+  compare->add_flag("--pictures", o.pictures,
+                    "Also render each scene with each structure, and write into\n"
+                    "DIR/pictures the picture, heat maps of the work, and EXR files of all");
   add_batch_options(*compare, o.batches);
   compare->add_option("--rounds", o.rounds, "Rounds of each race")
       ->check(CLI::Range(3u, 1000u))
@@ -157,8 +160,10 @@ CLI::App* add_render(CLI::App& app, raymeter::RenderOptions& o) {
   render
       ->add_option("--heat", o.heat,
                    "Instead of the picture a false-colour map of the work per pixel:\n"
-                   "steps, empty-steps, tests or distinct-tests")
-      ->type_name("MEASURE");
+                   "steps, empty-steps, tests or distinct-tests; given several times: the\n"
+                   "picture, and beside it a row of maps for each")
+      ->type_name("MEASURE")
+      ->allow_extra_args(false);
   render
       ->add_option("--compare", o.compare,
                    "With --heat: the map of another structure beside the first, on the\n"
@@ -193,6 +198,7 @@ CLI::App* add_render(CLI::App& app, raymeter::RenderOptions& o) {
       "  raymeter render balls4.nff -o balls.png\n"
       "  raymeter render balls4.nff -s grid --size 640x480 -o balls.exr\n"
       "  raymeter render balls4.nff -s grid --compare octree --heat tests -o tests.png\n"
+      "  raymeter render balls4.nff -s grid --compare octree --heat steps --heat tests -o both.png\n"
       "  raymeter render balls4.nff --size 512x512 --pixels corners     (the SPD's ray counts)");
   return render;
 }

@@ -3,28 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <thread>
 
 #include "cli/arguments.h"
-#include "harness/rendering.h"
-#include "reports/heat_map.h"
-#include "reports/picture_file.h"
-#include "reports/progress_bar.h"
-#include "reports/rendering_pictures.h"
+#include "cli/pictures.h"
 #include "scenes/base/error.h"
 #include "scenes/open_scene.h"
 
 namespace raymeter {
 namespace {
 
-enum class PictureKind : std::uint8_t { none, png, exr, heat };
+enum class PictureKind : std::uint8_t { none, picture, heat };
 
 PictureKind picture_kind(const RenderOptions& options) {
-  if (!options.heat.empty()) work_measure(options.heat);
+  for (const std::string& measure : options.heat) work_measure(measure);
   const std::string extension = std::filesystem::path(options.out).extension().string();
   if (options.out.empty()) {
     if (!options.heat.empty()) throw Error("--heat needs a file to write to: -o FILE.png");
@@ -39,7 +33,7 @@ PictureKind picture_kind(const RenderOptions& options) {
     if (extension != ".png") throw Error("--heat makes a PNG; an EXR file has all counts as layers anyway");
     return PictureKind::heat;
   }
-  return extension == ".png" ? PictureKind::png : PictureKind::exr;
+  return PictureKind::picture;
 }
 
 RenderSettings settings_of(const RenderOptions& options, const Scene& scene) {
@@ -52,51 +46,6 @@ RenderSettings settings_of(const RenderOptions& options, const Scene& scene) {
   settings.threads = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.primary_only = options.rays == "primary";
   return settings;
-}
-
-/// One structure's rendering, and how long it took.
-struct Rendered {
-  std::string spec, brief;
-  Rendering rendering;
-  double build_seconds = 0, render_seconds = 0;
-};
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-Rendered render_with(const Spec& spec, const Scene& scene, const RenderOptions& options,
-                     RenderSettings settings, const Registry& registry, bool must_count) {
-  const Arguments arguments = registry.arguments(spec);
-  Rendered result{arguments.canonical(), arguments.brief(), {}};
-  ProgressBar bar;
-  bar.show(0, 1, "building " + result.brief);
-  const auto start = std::chrono::steady_clock::now();
-  const auto structure = registry.build(spec, {scene, settings.threads, options.memory_limit});
-  result.build_seconds = seconds_since(start);
-  if (must_count && !structure->counts())
-    throw Error(fmt::format("{} can't count what it does: no heat map", result.brief));
-  settings.count = structure->counts();
-  const auto render_start = std::chrono::steady_clock::now();
-  result.rendering = render(scene, *structure, settings, [&](std::size_t done, std::size_t total) {
-    bar.show(done, total, "rendering with " + result.brief);
-  });
-  result.render_seconds = seconds_since(render_start);
-  return result;
-}
-
-void write_picture(const RenderOptions& options, PictureKind kind, const Scene& scene,
-                   const std::vector<Rendered>& all) {
-  const Rendered& first = all[0];
-  std::string specs = first.spec;
-  for (std::size_t i = 1; i < all.size(); ++i) specs += " " + all[i].spec;
-  const PictureMetadata metadata = rendering_metadata(scene, specs, first.rendering);
-  if (kind == PictureKind::png) write_png(options.out, colour_picture(first.rendering), metadata);
-  if (kind == PictureKind::exr) write_exr(options.out, rendering_layers(first.rendering, metadata));
-  if (kind != PictureKind::heat) return;
-  std::vector<HeatMapPanel> panels;
-  for (const Rendered& one : all) panels.push_back({one.brief, &one.rendering});
-  write_png(options.out, heat_map_sheet(scene.name(), work_measure(options.heat), panels), metadata);
 }
 
 void print_rays(const Rendering& rendering) {
@@ -112,6 +61,10 @@ void print_rays(const Rendering& rendering) {
 void print_work(const Rendered& one, bool primary_only) {
   fmt::print("{}: built in {:.3g} s, rendered in {:.3g} s{}\n", one.spec, one.build_seconds,
              one.render_seconds, one.rendering.work.empty() ? "" : " with counting");
+  if (const StructureStats& stats = one.stats; stats.cells > 0)
+    fmt::print("  {} cells, {} of them empty, {} references, {} inner nodes\n", stats.cells,
+               stats.empty_cells, stats.references, stats.inner_nodes);
+  if (!one.stats.note.empty()) fmt::print("  {}\n", one.stats.note);
   if (one.rendering.work.empty()) return;
   PixelWork sum;
   for (const PixelWork& work : one.rendering.work) {
@@ -149,8 +102,15 @@ int run_render(const RenderOptions& options, const Registry& registry) {
   check_picture(settings.size);
   std::vector<Rendered> all;
   for (const Spec& spec : specs)
-    all.push_back(render_with(spec, scene, options, settings, registry, kind == PictureKind::heat));
-  if (kind != PictureKind::none) write_picture(options, kind, scene, all);
+    all.push_back(
+        render_with(spec, scene, settings, options.memory_limit, registry, kind == PictureKind::heat));
+  if (kind == PictureKind::heat) {
+    std::vector<WorkMeasure> measures;
+    for (const std::string& name : options.heat) measures.push_back(work_measure(name));
+    write_heat_maps(options.out, scene, measures, all);
+  } else if (kind == PictureKind::picture) {
+    write_picture(options.out, scene, all[0]);
+  }
 
   const Rendering& first = all[0].rendering;
   fmt::print("{}  {}x{}, depth {}, ray hash {:016x}\n", scene.name(), first.columns, first.rows,

@@ -12,9 +12,9 @@ struct RenderOptions {
   std::string scene;
   std::string structure = "counted-bvh";
   std::vector<std::string> compare;
-  std::string out;   ///< empty: no picture
-  std::string heat;  ///< empty: the picture itself
-  std::string size;  ///< empty: the scene's
+  std::string out;                ///< empty: no picture
+  std::vector<std::string> heat;  ///< empty: the picture itself
+  std::string size;               ///< empty: the scene's
   std::string pixels = "centres";
   std::string rays = "all";
   std::string camera;

@@ -31,4 +31,9 @@ struct HeatMapPanel {
 /// marks ">=".
 Canvas heat_map_sheet(std::string_view scene, WorkMeasure measure, std::span<const HeatMapPanel> panels);
 
+/// The same for one measure. For n of them: the picture, and beside it a row of heat maps for each measure,
+/// each row on a scale of its own and 1/n of the picture's size, a pixel of a map being the mean of n x n.
+Canvas heat_map_sheet(std::string_view scene, std::span<const WorkMeasure> measures,
+                      std::span<const HeatMapPanel> panels);
+
 }  // namespace raymeter

@@ -39,6 +39,7 @@ std::string try_to_write_png(const std::string& file, const Canvas& picture,
   OIIO::ImageSpec spec(static_cast<int>(picture.width()), static_cast<int>(picture.height()), 3,
                        OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("png:compressionLevel", 9);
   add_metadata(spec, metadata);
   if (!output->open(file, spec) || !output->write_image(OIIO::TypeDesc::UINT8, picture.bytes().data()) ||
       !output->close())

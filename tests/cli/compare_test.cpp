@@ -130,6 +130,18 @@ TEST_F(Compare, SweepsAndBaselines) {
   EXPECT_EQ(rows[3].at("structure"), "counted-bvh");
 }
 
+TEST_F(Compare, PicturesOfARun) {
+  const Outcome outcome = run(small + " -s grid:amount=1,2 -s embree -r whitted:depth=2 --pictures" + out());
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_THAT(outcome.text, HasSubstr("pictures in " + (folder_ / "pictures").string()));
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "pictures"))
+    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  EXPECT_THAT(names, testing::UnorderedElementsAre("picture.png", "heat-steps.png", "heat-empty-steps.png",
+                                                   "heat-tests.png", "heat-distinct-tests.png", "grid.exr",
+                                                   "grid_amount=2.exr", "embree.exr"));
+}
+
 TEST_F(Compare, BadUsageIsOneLineAndStatusTwo) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "subcommand"},
@@ -144,6 +156,8 @@ TEST_F(Compare, BadUsageIsOneLineAndStatusTwo) {
       {"compare soup --size 0x5", "expected WIDTHxHEIGHT"},
       {"compare soup --camera from=1x2x3", "'at' is missing"},
       {"compare soup --rounds 2", "rounds"},
+      {"compare soup --pictures", "--pictures needs a folder to write to"},
+      {"compare soup --pictures --out /tmp --size 60000x60000", "67108864 pixels are the most"},
       {"compare soup --seed -1", "seed"},
       {"compare /tmp", "/tmp: a folder"},
       {"compare soup:triangles=0", "should be a whole number"},

@@ -1,11 +1,17 @@
 // `raymeter render`, end to end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "run_command.h"
 
@@ -45,6 +51,7 @@ TEST_F(Render, WritesThePictureAndPrintsItsRays) {
   EXPECT_THAT(outcome.text, HasSubstr("64x48, depth 5, ray hash "));
   EXPECT_THAT(outcome.text, HasSubstr("  primary         1         3072 "));
   EXPECT_THAT(outcome.text, HasSubstr("counted-bvh:branching=8: built in "));
+  EXPECT_THAT(outcome.text, HasSubstr(" references, "));
   EXPECT_THAT(outcome.text, HasSubstr(" steps, "));
   EXPECT_THAT(outcome.text, Not(HasSubstr("\r")));
   EXPECT_THAT(bytes("a.png"), testing::StartsWith("\x89PNG"));
@@ -69,6 +76,57 @@ TEST_F(Render, HeatMapsOfSeveralStructures) {
   EXPECT_THAT(outcome.text, HasSubstr("\noctree:"));
   EXPECT_THAT(outcome.text, HasSubstr("\ntwo-level-grid:"));
   EXPECT_THAT(bytes("heat.png"), testing::StartsWith("\x89PNG"));
+}
+
+TEST_F(Render, SeveralHeatMapsAreRows) {
+  const Outcome outcome =
+      run(small + "-s grid --compare octree --heat steps --heat tests -o " + in_folder("rows.png"));
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_THAT(bytes("rows.png"), testing::StartsWith("\x89PNG"));
+}
+
+/// Starts the command, interrupts it when `now` says so, and returns how it ended.
+template <class Now>
+int interrupted(std::vector<std::string> arguments, const Now& now) {
+  arguments.insert(arguments.begin(), RAYMETER_COMMAND);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  while (!now()) {
+    if (waitpid(child, &status, WNOHANG) != 0) return status;  // too late
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGINT);
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST_F(Render, InterruptedItLeavesNoHalfWrittenFile) {
+  const std::vector<std::string> command{"render", "soup:triangles=500", "--depth", "1",
+                                         "-o",     in_folder("a.exr"),   "--size",  "1500x1500"};
+  // While it renders, for seconds: after a quarter of one.
+  const auto start = std::chrono::steady_clock::now();
+  const int rendering = interrupted(
+      command, [&] { return std::chrono::steady_clock::now() - start > std::chrono::milliseconds(250); });
+  EXPECT_TRUE(WIFSIGNALED(rendering) && WTERMSIG(rendering) == SIGINT) << rendering;
+  EXPECT_EQ(files(), 0);
+  // While it writes: when the file under its provisional name has grown. An older picture stays as it was.
+  std::ofstream(folder_ / "a.exr") << "older";
+  const int writing = interrupted(command, [&] {
+    std::error_code gone;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (entry.path().filename() != "a.exr" && entry.file_size(gone) > 10000 && !gone) return true;
+    return false;
+  });
+  EXPECT_TRUE(WIFSIGNALED(writing) && WTERMSIG(writing) == SIGINT) << writing;
+  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(bytes("a.exr"), "older");
 }
 
 TEST_F(Render, WithoutAFileItOnlyCounts) {

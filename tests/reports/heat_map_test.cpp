@@ -55,6 +55,21 @@ TEST(HeatMap, SeveralMapsShareAScaleAndShowDifferences) {
             40 * 30);
 }
 
+TEST(HeatMap, SeveralMeasuresAreRowsOfSmallerMapsBesideThePicture) {
+  const Rendering first = gradient(0), second = gradient(41);
+  const HeatMapPanel panels[] = {{"grid", &first}, {"octree", &second}};
+  const WorkMeasure measures[] = {WorkMeasure::steps, WorkMeasure::tests};
+  const Canvas sheet = heat_map_sheet("scene", measures, panels);
+  EXPECT_GE(count(sheet, {255, 0, 0}), 40 * 30);  // the picture
+  // A pixel of the maps is the mean of 2x2: 20.5 of 80 steps in the first, 61.5 in the second.
+  EXPECT_GE(count(sheet, sequential_colour(20.5 / 80)), 15);
+  EXPECT_GE(count(sheet, sequential_colour(61.5 / 80)), 15);
+  EXPECT_GE(count(sheet, sequential_colour(10.5 / 30)), 2 * 20);  // the tests of both, on their own scale
+  const WorkMeasure one[] = {WorkMeasure::steps};
+  EXPECT_EQ(heat_map_sheet("scene", one, panels).bytes(),
+            heat_map_sheet("scene", WorkMeasure::steps, panels).bytes());
+}
+
 TEST(HeatMap, AFewHugeValuesDoNotStretchTheScale) {
   Rendering rendering = gradient(0);
   rendering.work[7].steps = 1000000;
