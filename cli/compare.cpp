@@ -10,6 +10,7 @@
 
 #include "cli/arguments.h"
 #include "cli/pictures.h"
+#include "cli/report.h"
 #include "harness/comparison.h"
 #include "harness/environment.h"
 #include "harness/ray_kinds.h"
@@ -99,7 +100,10 @@ int run_compare(const CompareOptions& options, const Registry& registry) {
     }
   }
   if (options.pictures) fmt::print("pictures in {}\n", (folder / "pictures").string());
-  if (log) fmt::print("{} records in {}\n", log->records().size(), (folder / "records.csv").string());
+  if (log) {
+    write_report_page(folder, registry);
+    fmt::print("{} records and report.html in {}\n", log->records().size(), folder.string());
+  }
   return !all_opened ? 2 : recorder.all_right() ? 0 : 1;
 }
 

@@ -13,6 +13,7 @@
 #include "cli/list.h"
 #include "cli/rays.h"
 #include "cli/render.h"
+#include "cli/report.h"
 #include "harness/load_plugin.h"
 #include "scenes/base/error.h"
 #include "scenes/base/version.h"
@@ -86,7 +87,8 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
       ->capture_default_str();
   compare
       ->add_option("--out", o.out,
-                   "Folder for records.jsonl, records.csv and environment.json; with\n"
+                   "Folder for report.html, records.jsonl, records.csv and\n"
+                   "environment.json; with\n"
                    "the records of a killed run in it, the run goes on from there")
       ->type_name("DIR");
   compare->add_flag("--pictures", o.pictures,
@@ -203,6 +205,24 @@ CLI::App* add_render(CLI::App& app, raymeter::RenderOptions& o) {
   return render;
 }
 
+CLI::App* add_report(CLI::App& app, raymeter::ReportOptions& o) {
+  CLI::App* report = app.add_subcommand("report", "Make a page, or tables, of the records of comparisons");
+  report->add_option("folder", o.folders, "What compare --out wrote")->required()->type_name("DIR");
+  report
+      ->add_option("-o,--output", o.out,
+                   "report.html: one page that needs nothing else; .md: tables in\n"
+                   "Markdown; .tex: tables for LaTeX with booktabs; .csv: all records\n"
+                   "[report.html]")
+      ->type_name("FILE");
+  report->footer(
+      "Exit status: 0, or 2 for bad usage or input.\n\n"
+      "Examples:\n"
+      "  raymeter report results                       (compare --out writes this page, too)\n"
+      "  raymeter report monday tuesday -o both.html\n"
+      "  raymeter report results -o tables.tex");
+  return report;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -219,6 +239,9 @@ int main(int argc, char** argv) {
   add_plugins(*render_command, plugins);
   raymeter::RaysOptions rays;
   const CLI::App* const rays_command = add_rays(app, rays);
+  raymeter::ReportOptions report;
+  CLI::App* report_command = add_report(app, report);
+  add_plugins(*report_command, plugins);
   std::string what;
   CLI::App* list = app.add_subcommand("list", "Show what can be named: scenes, structures, rays, columns");
   list->add_option("what", what, "scenes, structures, rays or columns")
@@ -246,6 +269,7 @@ int main(int argc, char** argv) {
     }
     if (render_command->parsed()) return raymeter::run_render(render, registry);
     if (rays_command->parsed()) return raymeter::run_rays(rays, registry);
+    if (report_command->parsed()) return raymeter::run_report(report, registry);
     return raymeter::run_compare(compare, registry);
   } catch (const raymeter::Error& error) {
     fmt::print(stderr, "raymeter: {}\n", error.what());

@@ -14,6 +14,7 @@ install(TARGETS raymeter_pictures DESTINATION ${CMAKE_INSTALL_LIBDIR}/raymeter)
 set(private_headers
   accel/cell_lists.h accel/parallel.h
   baselines/embree_api.h baselines/embree_device.h
+  reports/html/page_template.h
   reports/openimageio/picture_module.h
   scenes/geometry/clipped_roots.h scenes/geometry/exact.h
   scenes/readers/json_place.h

@@ -126,6 +126,10 @@ void add_build(Record& r, const Built& built) {
   const StructureStats& stats = built.stats;
   const auto present = [](std::uint64_t count) { return count ? Record::Count(count) : Record::Count(); };
   r.build_s = built.seconds;
+  if (built.builds >= 3) {
+    r.build_low_s = built.range.low;
+    r.build_high_s = built.range.high;
+  }
   r.bytes = stats.bytes;
   r.peak_bytes = stats.peak_bytes;
   for (const auto& [part, bytes] : stats.bytes_by_part)
@@ -156,9 +160,11 @@ void add_counters(Record& r, const CounterTotals& totals) {
   r.point_locations_per_ray = totals.per_ray(totals.point_locations);
   r.subgrids_entered_per_ray = totals.per_ray(totals.subgrids_entered);
   r.steps_p50 = totals.steps_histogram.percentile(0.5);
+  r.steps_p90 = totals.steps_histogram.percentile(0.9);
   r.steps_p99 = totals.steps_histogram.percentile(0.99);
   r.steps_max = totals.steps_histogram.maximum();
   r.tests_p50 = totals.tests_histogram.percentile(0.5);
+  r.tests_p90 = totals.tests_histogram.percentile(0.9);
   r.tests_p99 = totals.tests_histogram.percentile(0.99);
   r.tests_max = totals.tests_histogram.maximum();
 }

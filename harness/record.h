@@ -20,13 +20,13 @@ struct Record {
   Count primitives, rays, hits;
   Text ray_hash, reference_hash, hit_hash;
 
-  Number build_s;
+  Number build_s, build_low_s, build_high_s;
   Text bytes_by_part;
   Count bytes, peak_bytes, nx, ny, nz, cells, empty_cells, inner_nodes, references, depth;
 
   Number steps_per_ray, cell_steps_per_ray, empty_cell_steps_per_ray, tests_per_ray, test_blocks_per_ray,
       distinct_tests_per_ray, decides_per_ray, point_locations_per_ray, subgrids_entered_per_ray;
-  Count steps_p50, steps_p99, steps_max, tests_p50, tests_p99, tests_max;
+  Count steps_p50, steps_p90, steps_p99, steps_max, tests_p50, tests_p90, tests_p99, tests_max;
 
   Number mrays_per_s, baseline_mrays_per_s, ratio, ratio_low, ratio_high, spread;
   Text noisy, pinned;

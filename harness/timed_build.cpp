@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <exception>
 #include <vector>
 
-#include "harness/statistics.h"
 #include "scenes/base/error.h"
 
 namespace raymeter {
@@ -49,6 +49,8 @@ Built build_timed(const Registry& registry, const Spec& spec, const BuildInput& 
     total += built.seconds;
   } while (built.structure && seconds.size() < 5 && total < 0.2);
   built.seconds = median(seconds);
+  built.builds = static_cast<unsigned>(seconds.size());
+  built.range = {std::ranges::min(seconds), std::ranges::max(seconds)};
   return built;
 }
 

@@ -4,6 +4,7 @@
 
 #include "accel/registry.h"
 #include "accel/structure.h"
+#include "harness/statistics.h"
 
 namespace raymeter {
 
@@ -11,7 +12,9 @@ namespace raymeter {
 struct Built {
   std::unique_ptr<Structure> structure;  ///< null when it could not be built
   StructureStats stats;
-  double seconds = 0;
+  double seconds = 0;  ///< median of the builds
+  unsigned builds = 1;
+  Interval range;  ///< shortest and longest build
   std::string failure;
 };
 

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <vector>
 
-#include "harness/grading.h"
-#include "harness/ray_kinds.h"
 #include "harness/statistics.h"
+#include "reports/record_text.h"
 #include "reports/text.h"
 
 namespace raymeter {
@@ -16,64 +14,20 @@ namespace {
 
 constexpr std::size_t label_width = 22;
 
-/// A number to about three digits; "-" when absent.
-std::string number(const Record::Number& value) {
-  if (!value) return "-";
-  if (*value != 0 && *value < 0.01) return fmt::format("{:.1e}", *value);
-  return fmt::format("{:.{}f}", *value, *value >= 100 ? 0 : *value >= 10 ? 1 : *value >= 1 ? 2 : 3);
-}
-
-std::string grouped(std::uint64_t value) {
-  std::string digits = fmt::format("{}", value);
-  for (std::ptrdiff_t at = std::ssize(digits) - 3; at > 0; at -= 3)
-    digits.insert(static_cast<std::size_t>(at), ",");
-  return digits;
-}
-
-/// "2 edge, 1 tie": the classes of grading other than `right` that are not empty.
-std::string differences(const Record& record) {
-  std::string text;
-  for (std::size_t grade = 1; grade < grade_count; ++grade) {
-    const std::string_view name = name_of(static_cast<Grade>(grade));
-    const Column& column = *std::ranges::find(columns(), name, &Column::name);
-    const Record::Count& count = record.*std::get<Record::Count Record::*>(column.member);
-    if (count.value_or(0) > 0)
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(*count), name);
-  }
-  return text;
-}
-
-std::string grade(const Record& record) {
-  if (record.status != "ok") return record.status;
-  if (record.wrong.value_or(0)) return fmt::format("{} WRONG", *record.wrong);
-  if (record.unexplained.value_or(0)) return fmt::format("{} unexamined", *record.unexplained);
-  if (record.not_given.value_or(0)) return fmt::format("{} not given", *record.not_given);
-  return record.right == record.rays ? "right" : "explained";
-}
-
-std::string brief_spec(const std::string& spec, const Registry& registry) {
-  return registry.arguments(parse_spec(spec)).brief();
-}
-
-/// The kind less the parameters that are at their default. Of rays from a file the batch's name says more,
-/// and their kind may be anybody's.
-std::string brief_batch(const std::string& batch) {
-  return batch.find(' ') == std::string::npos ? ray_arguments(parse_spec(batch)).brief() : batch;
-}
-
 /// A label that does not fit its column has a line of its own above the numbers.
 std::string row(const Record& record, const std::string& label) {
   auto milliseconds = record.build_s, megabytes = Record::Number{};
   if (milliseconds) *milliseconds *= 1e3;
   if (record.bytes) megabytes = static_cast<double>(*record.bytes) / 1e6;
   const std::string interval =
-      record.ratio_low ? number(record.ratio_low) + ".." + number(record.ratio_high) : "-";
+      record.ratio_low ? three_digits(record.ratio_low) + ".." + three_digits(record.ratio_high) : "-";
   const bool fits = label.size() <= label_width;
   return (fits ? "" : wrapped("  ", label, 4)) +
          fmt::format("  {:<{}}{:>8}{:>8}{:>8}{:>8}{} {:>14}{:>8}{:>8} {}\n", fits ? label : "", label_width,
-                     number(milliseconds), number(megabytes), number(record.mrays_per_s),
-                     number(record.ratio), record.noisy.empty() ? " " : "~", interval,
-                     number(record.steps_per_ray), number(record.tests_per_ray), grade(record));
+                     three_digits(milliseconds), three_digits(megabytes), three_digits(record.mrays_per_s),
+                     three_digits(record.ratio), record.noisy.empty() ? " " : "~", interval,
+                     three_digits(record.steps_per_ray), three_digits(record.tests_per_ray),
+                     grade_text(record));
 }
 
 }  // namespace

@@ -63,7 +63,37 @@ std::ofstream open_for_writing(const std::filesystem::path& file, std::ios::open
   return stream;
 }
 
-/// Written beside the file and renamed, so that a reader never sees half of it.
+/// The records of a file, and the bytes of their lines in `good`. Nothing where there is no file.
+std::vector<Record> read_lines(const std::filesystem::path& file, std::uintmax_t& good) {
+  std::vector<Record> records;
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  for (std::size_t number = 1; std::getline(in, line); ++number) {
+    if (in.eof()) break;  // no newline: the run was killed while it wrote this line
+    good += line.size() + 1;
+    try {
+      records.push_back(from_json(Json::parse(line)));
+    } catch (const Json::exception& error) {
+      throw error_at_line(file.string(), number, fmt::format("not a record ({})", error.what()));
+    }
+  }
+  return records;
+}
+
+/// The object of objects in an environment file, empty where there is no file.
+Json parse_environments(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return Json::object();
+  std::ostringstream text;  // stays empty where the file can't be read
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  Json environments = Json::parse(text.str(), nullptr, false);
+  const auto is_object = [](const Json& entry) { return entry.is_object(); };
+  if (!environments.is_object() || !std::ranges::all_of(environments, is_object))
+    throw Error(fmt::format("{}: not a JSON object of environments by their ids", file.string()));
+  return environments;
+}
+
+}  // namespace
+
 void replace_file(const std::filesystem::path& file, const std::string& content) {
   const std::filesystem::path temporary = file.string() + ".new";
   std::ofstream stream = open_for_writing(temporary);
@@ -73,24 +103,11 @@ void replace_file(const std::filesystem::path& file, const std::string& content)
   std::filesystem::rename(temporary, file);
 }
 
-}  // namespace
-
 RecordLog::RecordLog(const std::filesystem::path& file) : file_(file) {
   std::uintmax_t good = 0;
-  if (std::ifstream in(file, std::ios::binary); in) {
-    std::string line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
-      if (in.eof()) break;  // no newline: the run was killed while it wrote this line
-      good += line.size() + 1;
-      try {
-        records_.push_back(from_json(Json::parse(line)));
-      } catch (const Json::exception& error) {
-        throw error_at_line(file.string(), number, fmt::format("not a record ({})", error.what()));
-      }
-    }
-    in.close();
-    if (std::filesystem::file_size(file) != good) std::filesystem::resize_file(file, good);
-  }
+  records_ = read_lines(file, good);
+  if (std::filesystem::exists(file) && std::filesystem::file_size(file) != good)
+    std::filesystem::resize_file(file, good);
   stream_ = open_for_writing(file, std::ios::app);
 }
 
@@ -98,6 +115,12 @@ void RecordLog::append(const Record& record) {
   stream_ << to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
   if (!stream_) throw Error(fmt::format("{}: can't be written", file_.string()));
   records_.push_back(record);
+}
+
+std::vector<Record> read_records(const std::filesystem::path& file) {
+  if (!std::ifstream(file)) throw Error(fmt::format("{}: can't be read", file.string()));
+  std::uintmax_t good = 0;
+  return read_lines(file, good);
 }
 
 void write_csv(const std::filesystem::path& file, std::span<const Record> records) {
@@ -121,18 +144,21 @@ void write_csv(const std::filesystem::path& file, std::span<const Record> record
 
 void write_environment(const std::filesystem::path& file, const std::string& id,
                        std::span<const std::pair<std::string, std::string>> entries) {
-  Json environments = Json::object();
-  if (std::filesystem::exists(file)) {
-    std::ostringstream text;  // stays empty where the file can't be read
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    environments = Json::parse(text.str(), nullptr, false);
-    const auto is_object = [](const Json& entry) { return entry.is_object(); };
-    if (!environments.is_object() || !std::ranges::all_of(environments, is_object))
-      throw Error(fmt::format("{}: not a JSON object of environments by their ids", file.string()));
-  }
+  Json environments = parse_environments(file);
   Json& environment = environments[id] = Json::object();
   for (const auto& [name, value] : entries) environment[name] = value;
   replace_file(file, environments.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+Environments read_environments(const std::filesystem::path& file) {
+  Environments result;
+  const Json environments = parse_environments(file);
+  for (const auto& [id, entries] : environments.items()) {
+    auto& environment = result.emplace_back(id, Environments::value_type::second_type{}).second;
+    for (const auto& [name, value] : entries.items())
+      environment.emplace_back(name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return result;
 }
 
 }  // namespace raymeter

@@ -27,6 +27,9 @@ class RecordLog {
   std::vector<Record> records_;
 };
 
+/// What a records.jsonl holds; a last line that was left unfinished is not read. Throws Error (file, line).
+std::vector<Record> read_records(const std::filesystem::path& file);
+
 /// records.csv (RFC 4180): a header line of column names, then a line a record. Throws Error when it can't be
 /// written.
 void write_csv(const std::filesystem::path& file, std::span<const Record> records);
@@ -36,5 +39,13 @@ void write_csv(const std::filesystem::path& file, std::span<const Record> record
 /// and keeps the others. Throws Error when the file can't be written, or holds anything else.
 void write_environment(const std::filesystem::path& file, const std::string& id,
                        std::span<const std::pair<std::string, std::string>> entries);
+
+/// Environments by their ids, each (name, text) in order, as write_environment wrote them. None where there
+/// is no such file; throws Error when it holds anything else.
+using Environments = std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>>;
+Environments read_environments(const std::filesystem::path& file);
+
+/// Writes beside the file and renames, so that a reader never sees half of it. Throws Error.
+void replace_file(const std::filesystem::path& file, const std::string& content);
 
 }  // namespace raymeter
