@@ -214,12 +214,16 @@ CLI::App* add_report(CLI::App& app, raymeter::ReportOptions& o) {
                    "Markdown; .tex: tables for LaTeX with booktabs; .csv: all records\n"
                    "[report.html]")
       ->type_name("FILE");
+  report->add_flag("--diff", o.diff,
+                   "Say what changed from the first folder to the second: counters, memory\n"
+                   "and grades exactly, times where their intervals lie apart");
   report->footer(
-      "Exit status: 0, or 2 for bad usage or input.\n\n"
+      "Exit status: 0; 1 something got worse (--diff); 2 bad usage or input.\n\n"
       "Examples:\n"
       "  raymeter report results                       (compare --out writes this page, too)\n"
       "  raymeter report monday tuesday -o both.html\n"
-      "  raymeter report results -o tables.tex");
+      "  raymeter report results -o tables.tex\n"
+      "  raymeter report --diff before after           (in the CI of a project, say)");
   return report;
 }
 

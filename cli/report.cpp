@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "reports/record_diff.h"
 #include "reports/record_files.h"
 #include "reports/report.h"
 #include "reports/report_page.h"
@@ -20,17 +21,34 @@ std::vector<Record> records_in(const std::filesystem::path& folder) {
   return read_records(file);
 }
 
-Report report_of(const std::vector<std::string>& folders, const Registry& registry) {
-  std::vector<Record> records;
+Environments environments_in(const std::vector<std::string>& folders) {
   Environments environments;
-  for (const std::string& folder : folders) {
-    std::ranges::move(records_in(folder), std::back_inserter(records));
+  for (const std::string& folder : folders)
     for (auto& environment : read_environments(std::filesystem::path(folder) / "environment.json"))
       if (std::ranges::find(environments, environment.first, &Environments::value_type::first) ==
           environments.end())
         environments.push_back(std::move(environment));
-  }
-  return make_report(records, std::move(environments), registry);
+  return environments;
+}
+
+std::vector<Record> all_records(const std::vector<std::string>& folders) {
+  std::vector<Record> records;
+  for (const std::string& folder : folders)
+    std::ranges::move(records_in(folder), std::back_inserter(records));
+  return records;
+}
+
+Report report_of(const std::vector<std::string>& folders, const Registry& registry) {
+  return make_report(all_records(folders), environments_in(folders), registry);
+}
+
+int run_diff(const ReportOptions& options, const Registry& registry) {
+  if (options.folders.size() != 2 || !options.out.empty())
+    throw Error("report --diff takes two folders, the old and the new one, and no -o");
+  const RecordDiff diff = diff_records(records_in(options.folders[0]), records_in(options.folders[1]),
+                                       environments_in(options.folders), registry);
+  fmt::print("{}", diff_text(diff));
+  return diff.worse() ? 1 : 0;
 }
 
 }  // namespace
@@ -40,13 +58,11 @@ void write_report_page(const std::filesystem::path& folder, const Registry& regi
 }
 
 int run_report(const ReportOptions& options, const Registry& registry) {
+  if (options.diff) return run_diff(options, registry);
   const std::filesystem::path out = options.out.empty() ? "report.html" : options.out;
   const std::string form = out.extension().string();
   if (form == ".csv") {
-    std::vector<Record> records;
-    for (const std::string& folder : options.folders)
-      std::ranges::move(records_in(folder), std::back_inserter(records));
-    write_csv(out, records);
+    write_csv(out, all_records(options.folders));
   } else if (form == ".html" || form == ".md" || form == ".tex") {
     const Report report = report_of(options.folders, registry);
     replace_file(out, form == ".html" ? report_page(report)

@@ -58,6 +58,24 @@ TEST_F(ReportCommand, WritesTablesAndJoinsFolders) {
   EXPECT_EQ(read_csv(folder_ / "t.csv").size(), 10u);
 }
 
+TEST_F(ReportCommand, DiffIsStatusOneWhenSomethingGotWorse) {
+  ASSERT_EQ(compare("old").status, 0);
+  std::filesystem::copy(path("old"), path("new"));
+  const Outcome same = run("report --diff " + path("old") + " " + path("new"));
+  EXPECT_EQ(same.status, 0);
+  EXPECT_EQ(same.text, "5 races compared, 0 worse, 0 better, 0 other changes\n");
+
+  std::string records = content(folder_ / "new/records.jsonl");
+  const std::string key = "\"tests_per_ray\":";
+  records.insert(records.find(key) + key.size(), "1");  // ten times as many, or more
+  std::ofstream(folder_ / "new/records.jsonl", std::ios::binary) << records;
+  const Outcome worse = run("report --diff " + path("old") + " " + path("new"));
+  EXPECT_EQ(worse.status, 1);
+  EXPECT_THAT(worse.text, HasSubstr("soup:triangles=500  grid:amount=0.5  primary\n    tests_per_ray"));
+  EXPECT_EQ(run("report --diff " + path("new") + " " + path("old")).status, 0)
+      << "the other way round it got better";
+}
+
 TEST_F(ReportCommand, BadUsageIsOneLineAndStatusTwo) {
   ASSERT_EQ(compare("run").status, 0);
   std::ofstream(folder_ / "bad.jsonl") << "";
@@ -69,6 +87,7 @@ TEST_F(ReportCommand, BadUsageIsOneLineAndStatusTwo) {
       {"report " + path("bad"), "records.jsonl:1: not a record"},
       {"report " + path("run") + " -o " + path("x.pdf"), ".html, .md, .tex or .csv"},
       {"report " + path("run") + " -o " + path("no/x.html"), "can't be written"},
+      {"report --diff " + path("run"), "two folders"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = run(arguments);
