@@ -58,9 +58,12 @@ void check_structures(const Scene& scene, const RenderSettings& settings) {
 }
 
 TEST_P(RenderingOf, IsTheSameWithEveryExactStructure) {
-  const std::string path = shared_scene(std::string("scenes/spd/small/") + GetParam() + ".nff");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
-  check_structures(open_scene(path), {.size = {40, 30}, .depth = 5, .threads = 2});
+  std::string scene = GetParam();
+  if (scene.ends_with(".nff")) {
+    scene = shared_scene("scenes/" + scene);
+    if (!std::filesystem::exists(scene)) GTEST_SKIP() << "no shared data";
+  }
+  check_structures(open_scene(scene), {.size = {40, 30}, .depth = 5, .threads = 2});
 }
 
 TEST(RenderingOfThePapersScenes, IsTheSameWithEveryExactStructure) {
@@ -70,9 +73,14 @@ TEST(RenderingOfThePapersScenes, IsTheSameWithEveryExactStructure) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SpdSmall, RenderingOf,
-                         testing::Values("balls3", "gears2", "jacks3", "lattice6", "mount4", "nurbtst",
-                                         "rings3", "sample", "sombrero1", "teapot4", "tetra5", "tree8"),
-                         [](const auto& test) { return std::string(test.param); });
+                         testing::Values("spd/balls:size=3", "spd/gears:size=2", "spd/jacks:size=3",
+                                         "spd/lattice:size=6", "spd/mount:size=4", "spd/rings:size=3",
+                                         "spd/sombrero:size=1", "spd/teapot:size=4", "spd/tetra:size=5",
+                                         "spd/tree:size=8", "spd/small/nurbtst.nff", "spd/small/sample.nff"),
+                         [](const auto& test) {
+                           const std::string name = std::filesystem::path(test.param).filename().string();
+                           return name.substr(0, name.find_first_of(":."));
+                         });
 
 Scene spheres() {
   Random random(5);

@@ -17,11 +17,11 @@ namespace raymeter {
 namespace {
 
 struct Expected {
-  const char* file;
+  const char* scene;  ///< generated, or a file
   std::uint32_t width;
   double primary_hits, shadow, reflected, refracted;
   friend std::ostream& operator<<(std::ostream& out, const Expected& expected) {
-    return out << expected.file;
+    return out << expected.scene;
   }
 };
 
@@ -37,9 +37,12 @@ Rendering render_by_bvh(const Scene& scene, const PictureSize& size, unsigned de
 }
 
 void check(const Expected& expected) {
-  const std::string path = std::string(RAYMETER_SHARED_DATA) + "/scenes/" + expected.file;
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
-  const Rendering rendering = render_by_bvh(open_scene(path), {expected.width, expected.width, true}, 5);
+  std::string scene = expected.scene;
+  if (scene.ends_with(".nff")) {
+    scene = std::string(RAYMETER_SHARED_DATA) + "/scenes/" + scene;
+    if (!std::filesystem::exists(scene)) GTEST_SKIP() << "no shared data";
+  }
+  const Rendering rendering = render_by_bvh(open_scene(scene), {expected.width, expected.width, true}, 5);
   EXPECT_EQ(rendering.total(RayPurpose::primary).rays, (expected.width + 1) * (expected.width + 1));
   EXPECT_NEAR(double(rendering.total(RayPurpose::primary).hits), expected.primary_hits, 3);
   const auto near = [&](RayPurpose purpose, double rays) {
@@ -57,33 +60,35 @@ TEST_P(WhittedCountsSlow, AgreeWithAnIndependentTracer) {
   check(GetParam());
 }
 
+/// "balls3" of "spd/balls:size=3" and of "spd/small/balls3.nff".
 std::string name_of(const testing::TestParamInfo<Expected>& test) {
-  return std::filesystem::path(test.param.file).stem().string();
+  std::string name = std::filesystem::path(test.param.scene).filename().string();
+  if (const std::size_t size = name.find(":size="); size != std::string::npos) name.erase(size, 6);
+  return name.substr(0, name.find('.'));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Spd, WhittedCounts,
-    testing::Values(
-        Expected{"spd/small/balls3.nff", 512, 263169, 918297, 148743, 0},
-        Expected{"spd/small/gears2.nff", 512, 243148, 2769239, 447618, 296961},
-        Expected{"spd/small/jacks3.nff", 256, 18112, 24360, 29851, 0},
-        Expected{"spd/small/lattice6.nff", 512, 250612, 1122201, 212227, 0},
-        Expected{"spd/small/mount4.nff", 512, 173250, 411518, 356178, 356178},
-        // The table says 7: in this file the normals of the patches are opposite to their winding, and
-        // its tracer shades the side that the winding calls the back with the normal reversed.
-        Expected{"spd/small/nurbtst.nff", 256, 27739, 27739 - 7, 0, 0},
-        Expected{"spd/small/rings3.nff", 512, 263169, 942809, 179452, 0},
-        Expected{"spd/small/sample.nff", 512, 229225, 223226, 0, 0},
-        Expected{"spd/small/sombrero1.nff", 512, 112209, 110241, 0, 0},
-        Expected{"spd/small/teapot4.nff", 512, 161203, 414724, 228924, 0},
-        Expected{"spd/small/tetra5.nff", 512, 53807, 50135, 0, 0},
-        Expected{"spd/small/tree8.nff", 512, 166903, 1088877, 0, 0},
-        Expected{"spd/paper/balls2.nff", 512, 263169, 874391, 113455, 0},
-        Expected{"spd/paper/jacks2.nff", 256, 10490, 11958, 13546, 0},
-        Expected{"spd/paper/lattice2.nff", 512, 144389, 602597, 106296, 0},
-        Expected{"spd/paper/rings1.nff", 512, 263169, 820739, 49862, 0},
-        Expected{"spd/paper/tree4.nff", 512, 160573, 1069822, 0, 0}),
-    name_of);
+INSTANTIATE_TEST_SUITE_P(Spd, WhittedCounts,
+                         testing::Values(Expected{"spd/balls:size=3", 512, 263169, 918297, 148743, 0},
+                                         Expected{"spd/gears:size=2", 512, 243148, 2769239, 447618, 296961},
+                                         Expected{"spd/jacks:size=3", 256, 18112, 24360, 29851, 0},
+                                         Expected{"spd/lattice:size=6", 512, 250612, 1122201, 212227, 0},
+                                         Expected{"spd/mount:size=4", 512, 173250, 411518, 356178, 356178},
+                                         // The table says 7: in this file the normals of the patches are
+                                         // opposite to their winding, and its tracer shades the side that the
+                                         // winding calls the back with the normal reversed.
+                                         Expected{"spd/small/nurbtst.nff", 256, 27739, 27739 - 7, 0, 0},
+                                         Expected{"spd/rings:size=3", 512, 263169, 942809, 179452, 0},
+                                         Expected{"spd/small/sample.nff", 512, 229225, 223226, 0, 0},
+                                         Expected{"spd/sombrero:size=1", 512, 112209, 110241, 0, 0},
+                                         Expected{"spd/teapot:size=4", 512, 161203, 414724, 228924, 0},
+                                         Expected{"spd/tetra:size=5", 512, 53807, 50135, 0, 0},
+                                         Expected{"spd/tree:size=8", 512, 166903, 1088877, 0, 0},
+                                         Expected{"spd/balls:size=2", 512, 263169, 874391, 113455, 0},
+                                         Expected{"spd/jacks:size=2", 256, 10490, 11958, 13546, 0},
+                                         Expected{"spd/lattice:size=2", 512, 144389, 602597, 106296, 0},
+                                         Expected{"spd/rings:size=1", 512, 263169, 820739, 49862, 0},
+                                         Expected{"spd/tree:size=4", 512, 160573, 1069822, 0, 0}),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(
     Spd, WhittedCountsSlow,
     testing::Values(Expected{"spd/standard/balls4.nff", 512, 263169, 954971, 175921, 0},
