@@ -2,14 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <system_error>
 #include <vector>
 
+#include "baselines/register_baselines.h"
+#include "harness/load_plugin.h"
 #include "scenes/base/error.h"
 #include "scenes/base/spec.h"
 
 namespace raymeter {
+
+void add_plugins(CLI::App& command, std::vector<std::string>& plugins) {
+  command
+      .add_option("--plugin", plugins,
+                  "Shared library with more structures, as ./libmine.so; may be given\n"
+                  "several times")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+}
+
+Registry registry_with(const std::vector<std::string>& plugins) {
+  Registry registry;
+  register_accel(registry);
+  register_baselines(registry);
+  for (const std::string& plugin : plugins) load_plugin(plugin, registry);
+  return registry;
+}
 
 constexpr std::uint32_t max_side = 65536;
 

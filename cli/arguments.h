@@ -1,11 +1,22 @@
 #pragma once
 // Arguments that several subcommands have. All throw Error.
 #include <string>
+#include <vector>
 
+#include "accel/registry.h"
 #include "harness/pixel_order.h"
 #include "scenes/scene.h"
 
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's name
+class App;
+}
+
 namespace raymeter {
+
+/// --plugin.
+void add_plugins(CLI::App& command, std::vector<std::string>& plugins);
+/// All structures of Raymeter, and those of the plug-ins.
+Registry registry_with(const std::vector<std::string>& plugins);
 
 /// "320x240".
 PictureSize parse_size(const std::string& text);

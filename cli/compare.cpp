@@ -8,7 +8,6 @@
 #include <optional>
 #include <thread>
 
-#include "cli/arguments.h"
 #include "cli/pictures.h"
 #include "cli/report.h"
 #include "harness/comparison.h"
@@ -23,27 +22,14 @@
 namespace raymeter {
 namespace {
 
-std::vector<Spec> parse_all(const std::vector<std::string>& texts) {
-  std::vector<Spec> specs;
-  for (const std::string& text : texts)
-    for (Spec& spec : parse_specs(text)) specs.push_back(std::move(spec));
-  return specs;
-}
-
-ComparisonSettings settings_of(const CompareOptions& options) {
-  ComparisonSettings settings;
-  settings.structures = parse_all(options.structures);
-  settings.ray_kinds = parse_all(options.rays);
-  settings.ray_files.assign(options.ray_files.begin(), options.ray_files.end());
+ComparisonSettings comparison_settings(const CompareOptions& options) {
+  ComparisonSettings settings = settings_of(options);
   settings.baseline = parse_spec(options.baseline);
-  settings.batches = batch_settings(options.batches);
   settings.race.rounds = options.rounds;
-  settings.race.threads = options.threads;
   settings.race.time_budget = options.time_budget;
   // Both sides of all rounds fit a budget that is shorter than usual rounds.
   settings.race.min_round_seconds =
       std::min(settings.race.min_round_seconds, options.time_budget / (2 * options.rounds));
-  settings.memory_limit = options.memory_limit;
   return settings;
 }
 
@@ -59,7 +45,7 @@ RenderSettings picture_settings(const ComparisonSettings& settings) {
 }  // namespace
 
 int run_compare(const CompareOptions& options, const Registry& registry) {
-  const ComparisonSettings settings = settings_of(options);
+  const ComparisonSettings settings = comparison_settings(options);
   check(settings, registry);
   if (options.pictures && options.out.empty())
     throw Error("--pictures needs a folder to write to: --out DIR");

@@ -7,14 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "accel/registry.h"
-#include "baselines/register_baselines.h"
+#include "cli/arguments.h"
 #include "cli/compare.h"
 #include "cli/list.h"
 #include "cli/rays.h"
 #include "cli/render.h"
 #include "cli/report.h"
-#include "harness/load_plugin.h"
 #include "scenes/base/error.h"
 #include "scenes/base/version.h"
 
@@ -22,66 +20,11 @@ namespace {
 
 constexpr int bad_usage = 2;
 
-void add_plugins(CLI::App& command, std::vector<std::string>& plugins) {
-  command
-      .add_option("--plugin", plugins,
-                  "Shared library with more structures, as ./libmine.so; may be given\n"
-                  "several times")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-}
-
-/// How batches of rays are made: the same for every command that makes any.
-void add_batch_options(CLI::App& command, raymeter::BatchOptions& o) {
-  command.add_option("--size", o.size, "Picture, in pixels")->type_name("WxH")->capture_default_str();
-  command.add_option("--order", o.order, "Order of the rays in a batch")
-      ->check(CLI::IsMember({"tiled", "scanline", "shuffled"}))
-      ->capture_default_str();
-  command
-      .add_option("--pixels", o.pixels,
-                  "Rays through pixel centres, or through the (W+1)x(H+1) corners\n"
-                  "as the SPD counts them")
-      ->check(CLI::IsMember({"centres", "corners"}))
-      ->capture_default_str();
-  command
-      .add_option("--camera", o.camera,
-                  "As from=0x-5x2:at=0x0x0:up=0x0x1:angle=45 (degrees, horizontal)\n"
-                  "[the scene's]")
-      ->type_name("CAMERA");
-  command.add_option("--seed", o.seed, "Seed of rays and samples")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53u))
-      ->capture_default_str();
-}
-
 CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
   CLI::App* compare = app.add_subcommand(
       "compare", "Run identical rays through several structures; check, count and time every one");
+  raymeter::add_selection(*compare, o);
   // A line break in a description goes on in the same column; lines stay below 100 columns.
-  compare
-      ->add_option("scene", o.scenes,
-                   "Files (.nff .obj .ply .stl .gltf .glb), or generated scenes,\n"
-                   "as soup:triangles=60000")
-      ->required()
-      ->type_name("SCENE");
-  compare
-      ->add_option("-s,--structure", o.structures,
-                   "Structure, as grid:amount=0.5,1,2; may be given several times\n"
-                   "[all of `raymeter list structures` but brute-force]")
-      ->type_name("SPEC")
-      ->allow_extra_args(false);
-  compare
-      ->add_option("-r,--rays", o.rays,
-                   "Rays: primary shadow reflection diffuse ao random whitted; several\n"
-                   "times "
-                   "[primary shadow reflection diffuse]")
-      ->type_name("KIND")
-      ->allow_extra_args(false);
-  compare
-      ->add_option("--ray-file", o.ray_files,
-                   "Rays from a file that `raymeter rays` wrote; several times. Without\n"
-                   "-r these are the only rays")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
   compare->add_option("--baseline", o.baseline, "What ratios are taken against")
       ->type_name("SPEC")
       ->capture_default_str();
@@ -94,7 +37,6 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
   compare->add_flag("--pictures", o.pictures,
                     "Also render each scene with each structure, and write into\n"
                     "DIR/pictures the picture, heat maps of the work, and EXR files of all");
-  add_batch_options(*compare, o.batches);
   compare->add_option("--rounds", o.rounds, "Rounds of each race")
       ->check(CLI::Range(3u, 1000u))
       ->capture_default_str();
@@ -103,15 +45,6 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
                    "Seconds for the rounds of one race: under 3 rounds only where\n"
                    "one pass takes over a second")
       ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
-  compare->add_option("--threads", o.threads, "Threads that build and trace")
-      ->check(CLI::Range(1u, 1024u))
-      ->capture_default_str();
-  compare
-      ->add_option("--memory-limit", o.memory_limit,
-                   "Bytes that a structure may use; 500MB and 2GB are understood")
-      ->transform(CLI::AsSizeValue(true))
-      ->type_name("BYTES")
       ->capture_default_str();
   compare->footer(
       "Prints a table per scene. Exit status: 0 every structure but Embree was right; 1 one was wrong,\n"
@@ -135,7 +68,7 @@ CLI::App* add_rays(CLI::App& app, raymeter::RaysOptions& o) {
       ->type_name("KIND")
       ->capture_default_str();
   rays->add_option("-o,--output", o.out, "Replaced when it is there")->required()->type_name("FILE");
-  add_batch_options(*rays, o.batches);
+  raymeter::add_batch_options(*rays, o.batches);
   rays->footer(
       "The rays are those of compare with the same options, bit by bit. Exit status: 0, or 2 for bad\n"
       "usage or input.\n\n"
@@ -237,21 +170,21 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   std::vector<std::string> plugins;
   raymeter::CompareOptions compare;
-  add_plugins(*add_compare(app, compare), plugins);
+  raymeter::add_plugins(*add_compare(app, compare), plugins);
   raymeter::RenderOptions render;
   CLI::App* render_command = add_render(app, render);
-  add_plugins(*render_command, plugins);
+  raymeter::add_plugins(*render_command, plugins);
   raymeter::RaysOptions rays;
   const CLI::App* const rays_command = add_rays(app, rays);
   raymeter::ReportOptions report;
   CLI::App* report_command = add_report(app, report);
-  add_plugins(*report_command, plugins);
+  raymeter::add_plugins(*report_command, plugins);
   std::string what;
   CLI::App* list = app.add_subcommand("list", "Show what can be named: scenes, structures, rays, columns");
   list->add_option("what", what, "scenes, structures, rays or columns")
       ->required()
       ->check(CLI::IsMember({"scenes", "structures", "rays", "columns"}));
-  add_plugins(*list, plugins);
+  raymeter::add_plugins(*list, plugins);
 
   try {
     app.parse(argc, argv);
@@ -263,10 +196,7 @@ int main(int argc, char** argv) {
   }
 
   try {
-    raymeter::Registry registry;
-    raymeter::register_accel(registry);
-    raymeter::register_baselines(registry);
-    for (const std::string& plugin : plugins) raymeter::load_plugin(plugin, registry);
+    const raymeter::Registry registry = raymeter::registry_with(plugins);
     if (list->parsed()) {
       raymeter::run_list(what, registry);
       return 0;

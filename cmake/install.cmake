@@ -1,5 +1,6 @@
-# What `cmake --install` lays down: the command, the library, its headers under include/raymeter, and the package
-# files with which find_package(raymeter) gives raymeter::raymeter and raymeter::command.
+# What `cmake --install` lays down: the commands, the library, its headers under include/raymeter, and the package
+# files with which find_package(raymeter) gives raymeter::raymeter, raymeter::command
+# and raymeter::bench.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -27,13 +28,12 @@ foreach(folder scenes accel baselines harness reports)
     install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raymeter/${header_folder})
   endforeach()
 endforeach()
-if(TARGET raymeter_command)
-  # Finds the library from where it lies, so that an installed tree may be moved.
-  file(RELATIVE_PATH library_from_command /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
-  set_target_properties(raymeter_command PROPERTIES INSTALL_RPATH $ORIGIN/${library_from_command})
-  set_target_properties(raymeter_command PROPERTIES EXPORT_NAME command)
-  install(TARGETS raymeter_command EXPORT raymeter_targets)
-endif()
+# The commands find the library from where they lie, so that an installed tree may be moved.
+file(RELATIVE_PATH library_from_command /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+set_target_properties(raymeter_command raymeter_bench PROPERTIES INSTALL_RPATH $ORIGIN/${library_from_command})
+set_target_properties(raymeter_command PROPERTIES EXPORT_NAME command)
+set_target_properties(raymeter_bench PROPERTIES EXPORT_NAME bench)
+install(TARGETS raymeter_command raymeter_bench EXPORT raymeter_targets)
 
 install(EXPORT raymeter_targets FILE raymeter-targets.cmake NAMESPACE raymeter:: DESTINATION ${package_folder})
 

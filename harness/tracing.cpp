@@ -23,12 +23,6 @@ double now(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-void make_room(BatchAnswers& answers, const BatchView& batch) {
-  const bool closest = batch.query == QueryKind::closest;
-  answers.hits.resize(closest ? batch.rays.size() : 0);
-  answers.occluded.resize(closest ? 0 : batch.rays.size());
-}
-
 /// Calls work(chunk, first, count) for every chunk of the batch, each once in each pass.
 template <class Work>
 void for_chunks(const BatchView& batch, unsigned threads, std::size_t chunk_size, unsigned passes,
@@ -88,6 +82,12 @@ std::uint64_t count_hits(const BatchAnswers& answers) {
 
 unsigned all_cpus() {
   return std::max(1u, std::thread::hardware_concurrency());
+}
+
+void make_room(BatchAnswers& answers, const BatchView& batch) {
+  const bool closest = batch.query == QueryKind::closest;
+  answers.hits.resize(closest ? batch.rays.size() : 0);
+  answers.occluded.resize(closest ? 0 : batch.rays.size());
 }
 
 double trace(const Structure& structure, const BatchView& batch, BatchAnswers& answers, unsigned threads,

@@ -31,6 +31,9 @@ unsigned all_cpus();
 /// work.
 inline constexpr std::size_t chunk_rays = std::size_t{1} << 16u;
 
+/// Room for the answers of a batch, as `trace` and `count` make it where it is not there.
+void make_room(BatchAnswers& answers, const BatchView& batch);
+
 /// Traces all rays of `batch` chunk by chunk with denormals flushed, on this thread (threads = 1) or on
 /// `threads` of them, `passes` times over, and returns the seconds that all passes took together: CPU time of
 /// this thread for one thread, wall-clock time for more. The clock is read before the
