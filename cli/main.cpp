@@ -150,6 +150,10 @@ CLI::App* add_report(CLI::App& app, raymeter::ReportOptions& o) {
   report->add_flag("--diff", o.diff,
                    "Say what changed from the first folder to the second: counters, memory\n"
                    "and grades exactly, times where their intervals lie apart");
+  report
+      ->add_option("--tolerance", o.tolerance, "With --diff: percent by which a ratio must change, at least")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
   report->footer(
       "Exit status: 0; 1 something got worse (--diff); 2 bad usage or input.\n\n"
       "Examples:\n"

@@ -46,7 +46,7 @@ int run_diff(const ReportOptions& options, const Registry& registry) {
   if (options.folders.size() != 2 || !options.out.empty())
     throw Error("report --diff takes two folders, the old and the new one, and no -o");
   const RecordDiff diff = diff_records(records_in(options.folders[0]), records_in(options.folders[1]),
-                                       environments_in(options.folders), registry);
+                                       environments_in(options.folders), registry, options.tolerance / 100);
   fmt::print("{}", diff_text(diff));
   return diff.worse() ? 1 : 0;
 }

@@ -12,6 +12,7 @@ struct ReportOptions {
   std::vector<std::string> folders;
   std::string out;  ///< .html, .md, .tex or .csv
   bool diff = false;
+  double tolerance = 10;  ///< percent
 };
 
 /// Writes the report of the records in some folders, or says what changed between two of them. Returns the

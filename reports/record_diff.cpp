@@ -9,7 +9,6 @@
 #include <set>
 #include <tuple>
 
-#include "harness/race.h"
 #include "reports/record_text.h"
 #include "reports/text.h"
 
@@ -17,8 +16,6 @@ namespace raymeter {
 namespace {
 
 using Kind = Change::Kind;
-
-constexpr double least_build_factor = 1.25;
 
 /// What must be equal for two records to be of the same race.
 using Race =
@@ -112,10 +109,11 @@ void compare_counts(Comparer& comparer, const Record& before, const Record& afte
     comparer.add(Kind::other, fmt::format("note \"{}\" -> \"{}\"", before.note, after.note));
 }
 
-void compare_times(Comparer& comparer, const Record& before, const Record& after, double floor) {
+void compare_times(Comparer& comparer, const Record& before, const Record& after, double floor,
+                   double tolerance) {
   if (before.ratio_low && before.ratio_high && after.ratio_low && after.ratio_high && before.ratio &&
       after.ratio) {
-    const double factor = 1 + std::max(floor, noisy_spread);
+    const double factor = 1 + std::max(floor, tolerance);
     const bool slower = *after.ratio_high < *before.ratio_low && *after.ratio * factor < *before.ratio;
     const bool faster = *after.ratio_low > *before.ratio_high && *after.ratio > *before.ratio * factor;
     if (slower || faster)
@@ -124,12 +122,15 @@ void compare_times(Comparer& comparer, const Record& before, const Record& after
                                arrow(*before.ratio, *after.ratio), *before.ratio_low, *before.ratio_high,
                                *after.ratio_low, *after.ratio_high));
   }
-  if (before.build_low_s && before.build_high_s && after.build_low_s && after.build_high_s) {
-    const bool slower = *after.build_low_s > *before.build_high_s * least_build_factor;
-    const bool faster = *after.build_high_s * least_build_factor < *before.build_low_s;
-    if (slower || faster)
-      comparer.add(slower ? Kind::worse : Kind::better, "build_s " + arrow(*before.build_s, *after.build_s));
-  }
+}
+
+void compare_builds(Comparer& comparer, const Record& before, const Record& after, double tolerance) {
+  if (!before.build_low_s || !before.build_high_s || !after.build_low_s || !after.build_high_s) return;
+  const double factor = 1 + 4 * tolerance;
+  const bool slower = *after.build_low_s > *before.build_high_s * factor;
+  const bool faster = *after.build_high_s * factor < *before.build_low_s;
+  if (slower || faster)
+    comparer.add(slower ? Kind::worse : Kind::better, "build_s " + arrow(*before.build_s, *after.build_s));
 }
 
 /// How far the baseline strays from itself on the rays of each scene, in any of the records.
@@ -149,7 +150,7 @@ bool RecordDiff::worse() const {
 }
 
 RecordDiff diff_records(std::span<const Record> before, std::span<const Record> after,
-                        const Environments& environments, const Registry& registry) {
+                        const Environments& environments, const Registry& registry, double tolerance) {
   RecordDiff diff;
   Floors floors;
   add_floors(floors, before);
@@ -160,6 +161,7 @@ RecordDiff diff_records(std::span<const Record> before, std::span<const Record> 
                        brief_batch(r.batch));
   };
   std::set<Race> done;
+  std::set<std::pair<std::string, std::string>> built;
   // In the order of the records, not of the map.
   for (const Record& record : before) {
     const Race race = race_of(record);
@@ -189,10 +191,13 @@ RecordDiff diff_records(std::span<const Record> before, std::span<const Record> 
       comparer.add(Kind::worse, fmt::format("reference_hash {} -> {}: another truth about the same rays",
                                             old.reference_hash, now.reference_hash));
     compare_counts(comparer, old, now);
-    if (cpu_of(old, environments) != cpu_of(now, environments))
+    if (cpu_of(old, environments) != cpu_of(now, environments)) {
       diff.times_compared = false;
-    else
-      compare_times(comparer, old, now, floors[{old.scene, old.batch}]);
+      continue;
+    }
+    compare_times(comparer, old, now, floors[{old.scene, old.batch}], tolerance);
+    // A structure is built once for all rays.
+    if (built.insert({old.scene, old.spec}).second) compare_builds(comparer, old, now, tolerance);
   }
   for (const Record& record : after)
     if (done.insert(race_of(record)).second) diff.changes.push_back({Kind::other, named(record), "is new"});

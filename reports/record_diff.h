@@ -27,12 +27,13 @@ struct RecordDiff {
 };
 
 /// Compares the races that two runs share: same scene, structure, rays, baseline and settings. Counters,
-/// bytes, grades and hashes exactly; ratios by their intervals, which must lie apart, and by more than the
-/// baseline strays from itself in either run, and 5% at least. Build times count where their ranges lie apart
-/// by a factor of more than 1.25. A race that is missing or whose rays differ counts as worse: nobody can
-/// vouch for it.
+/// bytes, grades and hashes exactly. Ratios by their intervals, which must lie apart, and the ratios by more
+/// than `tolerance` (0.1: 10%) and than the baseline strays from itself in either run: intervals know nothing
+/// of what differs from process to process, as the places of things in memory. Build times where their ranges
+/// lie apart by more than four times the tolerance, since nothing runs beside them that would cancel the
+/// machine's moods. A race that is missing or whose rays differ counts as worse: nobody can vouch for it.
 RecordDiff diff_records(std::span<const Record> before, std::span<const Record> after,
-                        const Environments& environments, const Registry& registry);
+                        const Environments& environments, const Registry& registry, double tolerance);
 
 /// The changes as text: what got worse first.
 std::string diff_text(const RecordDiff& diff);

@@ -30,13 +30,19 @@ std::string html_cell(const TableCell& cell, const TableColumn& column, const st
                      html_text(cell.text));
 }
 
+/// Text whose lines may break after a colon, as those of specs.
+std::string breakable(std::string text) {
+  for (std::size_t at = 0; (at = text.find(':', at)) != std::string::npos; at += 6) text.insert(at + 1, "<wbr>");
+  return text;
+}
+
 std::string html_table(const Report& report, const Table& table) {
   std::string text =
       fmt::format("<div class=\"scroll\"><table><caption>{}</caption><thead><tr>", html_text(table.caption));
   for (const TableColumn& column : table.columns) {
     text += fmt::format("<th scope=\"col\" class=\"{}\"{}{}>{}", column.number ? "n" : "t",
                         attribute("spec", column.spec), attribute("batch", column.batch),
-                        html_text(column.title));
+                        breakable(html_text(column.title)));
     if (!column.unit.empty()) text += fmt::format(" <span class=\"unit\">{}</span>", html_text(column.unit));
     text += "</th>";
   }
@@ -58,13 +64,14 @@ std::string html_table(const Report& report, const Table& table) {
 
 /// A place where a script draws, and the numbers that it draws.
 std::string figure(const Report& report, const char* chart, std::size_t section, const std::string& title,
-                   const std::string& unit, const Table& table, std::size_t index = 0) {
+                   const std::string& unit, const Table& table, std::size_t index = 0, bool open = false) {
   if (table.rows.empty()) return "";
   return fmt::format(
       "<figure data-chart=\"{}\" data-of=\"{}\" data-index=\"{}\"><figcaption><h3>{}</h3><span "
       "class=\"unit\">{}</span>"
-      "</figcaption><div class=\"panels\"></div><details><summary>Numbers</summary>{}</details></figure>\n",
-      chart, section, index, html_text(title), html_text(unit), html_table(report, table));
+      "</figcaption><div class=\"panels\"></div><details{}><summary>Numbers</summary>{}</details></figure>\n",
+      chart, section, index, html_text(title), html_text(unit), open ? " open" : "",
+      html_table(report, table));
 }
 
 std::string section_html(const Report& report, std::size_t index) {
@@ -72,11 +79,13 @@ std::string section_html(const Report& report, std::size_t index) {
   const Record& first = section.records.front();
   std::string text = fmt::format(
       "<section class=\"scene\" id=\"scene-{0}\" data-section=\"{0}\"><header><h2>{1}</h2>"
-      "<p class=\"sub\">{2}{3}{4} primitives · scene hash <code>{5}</code></p></header>\n",
+      "<p class=\"sub\">{2}{3}{4} primitives · scene hash <code>{5}</code> · {6} thread{7} · {8} "
+      "order</p></header>\n",
       index, html_text(section.title),
       section.setting.empty() ? "" : "<b>" + html_text(section.setting) + "</b> · ",
       section.scene == section.title ? "" : "<code>" + html_text(section.scene) + "</code> · ",
-      grouped(first.primitives.value_or(0)), html_text(first.scene_hash));
+      grouped(first.primitives.value_or(0)), html_text(first.scene_hash), first.threads.value_or(1),
+      first.threads.value_or(1) == 1 ? "" : "s", html_text(first.order));
   const std::string baseline = report.specs[section.baseline].label;
   text += figure(report, "ratio", index, "Throughput over that of " + baseline,
                  "ratio, with its " + interval_words(section), ratio_table(report, section));
@@ -146,7 +155,7 @@ std::string body(const Report& report) {
   if (!report.sections.empty()) {
     text += figure(report, "overview", 0, "At a glance",
                    "throughput over the baseline's; dot: a scene and ray kind, diamond: geometric mean",
-                   overview_table(report));
+                   overview_table(report), 0, report.sections.size() > 1);
   }
   text += "</div>\n<div id=\"filters\"></div>\n";
   for (std::size_t i = 0; i < report.sections.size(); ++i) text += section_html(report, i);

@@ -88,6 +88,11 @@ Tallies tallies(const Report& report) {
   return all;
 }
 
+/// Orders (count, what): the highest count first.
+constexpr auto more_first = [](const auto& a, const auto& b) {
+  return a.first != b.first ? a.first > b.first : a.second < b.second;
+};
+
 /// Wins by structure, with its best spec where several of its specs win.
 Finding fastest(const Report& report, const Tallies& all) {
   std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> wins;  // of its specs, and which
@@ -96,7 +101,7 @@ Finding fastest(const Report& report, const Tallies& all) {
   if (wins.empty()) return {"Fastest", "nothing was timed."};
   std::vector<std::pair<std::size_t, std::string>> order;
   for (auto& [structure, specs] : wins) {
-    std::ranges::stable_sort(specs, std::greater<>(), &std::pair<std::size_t, std::size_t>::first);
+    std::ranges::sort(specs, more_first);
     std::size_t count = 0;
     for (const auto& [of_spec, spec] : specs) count += of_spec;
     const std::string& best = report.specs[specs[0].second].label;
@@ -107,7 +112,7 @@ Finding fastest(const Report& report, const Tallies& all) {
     if (specs.size() > 1) name += fmt::format(", most often as {}", best);
     order.emplace_back(count, name);
   }
-  std::ranges::stable_sort(order, std::greater<>(), &std::pair<std::size_t, std::string>::first);
+  std::ranges::sort(order, more_first);
   std::vector<std::string> names;
   for (const auto& [count, name] : order) names.push_back(name);
   return {"Fastest",
