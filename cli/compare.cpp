@@ -72,12 +72,10 @@ int run_compare(const CompareOptions& options, const Registry& registry) {
       fmt::print("{}\n", comparison_table(recorder.take_records(), registry));
       std::fflush(stdout);
       if (log) write_csv(folder / "records.csv", log->records());
-      // Scenes of different folders may have the same name.
       if (options.pictures)
-        write_pictures(
-            folder / "pictures" / fmt::format("{}-{:08x}", as_file_name(scene.name()), scene.hash() >> 32u),
-            scene, structures_of(settings, registry), picture_settings(settings), settings.memory_limit,
-            registry);
+        write_pictures(folder / picture_folder(scene.name(), fmt::format("{:016x}", scene.hash())), scene,
+                       structures_of(settings, registry), picture_settings(settings), settings.memory_limit,
+                       registry);
     } catch (const Error& error) {
       // One bad scene does not keep the others from being compared.
       recorder.take_records();

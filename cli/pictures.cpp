@@ -91,6 +91,11 @@ void write_pictures(const std::filesystem::path& folder, const Scene& scene, std
   }
 }
 
+std::filesystem::path picture_folder(const std::string& scene, const std::string& scene_hash) {
+  return std::filesystem::path("pictures") /
+         fmt::format("{}-{}", as_file_name(scene), scene_hash.substr(0, 8));
+}
+
 std::string as_file_name(std::string_view text) {
   constexpr std::size_t longest = 120;  // names may have 255 bytes, and others are made of this one
   std::string name(text.substr(0, longest));

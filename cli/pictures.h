@@ -38,6 +38,10 @@ void write_heat_maps(const std::filesystem::path& file, const Scene& scene,
 void write_pictures(const std::filesystem::path& folder, const Scene& scene, std::span<const Spec> structures,
                     const RenderSettings& settings, std::uint64_t memory_limit, const Registry& registry);
 
+/// Where in a run's folder the pictures of a scene are: scenes of different folders may have the same name.
+/// `scene_hash` as records hold it.
+std::filesystem::path picture_folder(const std::string& scene, const std::string& scene_hash);
+
 /// A text as part of a file's name: letters, digits, '.', '-', '_' and '=' stay.
 std::string as_file_name(std::string_view text);
 

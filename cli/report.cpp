@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <iterator>
 
+#include "cli/pictures.h"
 #include "reports/record_diff.h"
 #include "reports/record_files.h"
 #include "reports/report.h"
@@ -38,8 +40,31 @@ std::vector<Record> all_records(const std::vector<std::string>& folders) {
   return records;
 }
 
+/// The pictures that stand beside the records (compare --pictures): of each scene the first that is found.
+void add_pictures(Report& report, const std::vector<std::string>& folders) {
+  constexpr std::pair<const char*, const char*> names[] = {
+      {"picture", "picture"},
+      {"heat-steps", "Steps of a pixel's rays"},
+      {"heat-tests", "Tests of a pixel's rays"},
+      {"heat-empty-steps", "Steps into empty cells"},
+      {"heat-distinct-tests", "Tests less the repeated ones"}};
+  for (ReportSection& section : report.sections)
+    for (const auto& [name, title] : names)
+      for (const std::string& folder : folders) {
+        const std::filesystem::path file = std::filesystem::path(folder) /
+                                           picture_folder(section.scene, section.records[0].scene_hash) /
+                                           (std::string(name) + ".png");
+        std::ifstream in(file, std::ios::binary);
+        if (!in || !std::filesystem::is_regular_file(file)) continue;
+        section.pictures.push_back({title, std::string(std::istreambuf_iterator<char>(in), {})});
+        break;
+      }
+}
+
 Report report_of(const std::vector<std::string>& folders, const Registry& registry) {
-  return make_report(all_records(folders), environments_in(folders), registry);
+  Report report = make_report(all_records(folders), environments_in(folders), registry);
+  add_pictures(report, folders);
+  return report;
 }
 
 int run_diff(const ReportOptions& options, const Registry& registry) {

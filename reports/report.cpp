@@ -108,7 +108,7 @@ Report make_report(std::span<const Record> records, Environments environments, c
     }
     if (replaced) continue;
     if (at == report.sections.size()) {
-      report.sections.push_back({record.scene, brief_scene(record.scene), "", 0, {}, {}, {}, {}, {}});
+      report.sections.push_back({record.scene, brief_scene(record.scene), "", 0, {}, {}, {}, {}, {}, {}});
       settings.push_back(setting);
     }
     ReportSection& section = report.sections[at];

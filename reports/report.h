@@ -23,6 +23,12 @@ struct ReportBatch {
   std::string canonical, label;
 };
 
+/// A PNG file that the report shows.
+struct ReportPicture {
+  std::string title;
+  std::string png;  ///< its bytes
+};
+
 /// The records of one scene under one setting (machine, threads, order of rays, seed, baseline).
 struct ReportSection {
   std::string scene;    ///< as the records name it
@@ -31,6 +37,7 @@ struct ReportSection {
   std::size_t baseline = 0;
   std::vector<std::size_t> specs, batches;  ///< indices into the report's, in order of appearance
   std::vector<Record> records;
+  std::vector<ReportPicture> pictures;
   std::vector<std::size_t> spec_of, batch_of;  ///< of each record
 
   const Record* find(std::size_t spec, std::size_t batch) const;  ///< nullptr: not measured

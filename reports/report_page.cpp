@@ -23,16 +23,15 @@ std::string swatch(const Report& report, std::size_t spec) {
 
 std::string html_cell(const TableCell& cell, const TableColumn& column, const std::string& before) {
   constexpr const char* classes[] = {"", " best", " noisy", " fault"};
-  const std::string bar = cell.share ? fmt::format(" style=\"--share:{:.3f}\"", *cell.share) : "";
-  return fmt::format("<td class=\"{}{}{}\"{}{}{}>{}{}</td>", column.number ? "n" : "t",
-                     classes[static_cast<std::size_t>(cell.mark)], cell.share ? " bar" : "",
-                     attribute("spec", cell.spec), attribute("batch", column.batch), bar, before,
-                     html_text(cell.text));
+  return fmt::format("<td class=\"{}{}\"{}{}>{}{}</td>", column.number ? "n" : "t",
+                     classes[static_cast<std::size_t>(cell.mark)], attribute("spec", cell.spec),
+                     attribute("batch", column.batch), before, html_text(cell.text));
 }
 
 /// Text whose lines may break after a colon, as those of specs.
 std::string breakable(std::string text) {
-  for (std::size_t at = 0; (at = text.find(':', at)) != std::string::npos; at += 6) text.insert(at + 1, "<wbr>");
+  for (std::size_t at = 0; (at = text.find(':', at)) != std::string::npos; at += 6)
+    text.insert(at + 1, "<wbr>");
   return text;
 }
 
@@ -74,21 +73,44 @@ std::string figure(const Report& report, const char* chart, std::size_t section,
       html_table(report, table));
 }
 
+/// The picture of the scene beside its heading; heat maps below each other.
+std::string pictures_html(const ReportSection& section, bool of_heading) {
+  std::string text;
+  for (std::size_t i = 0; i < section.pictures.size(); ++i) {
+    const ReportPicture& picture = section.pictures[i];
+    if ((i == 0) != of_heading) continue;
+    const std::string image =
+        fmt::format("<img src=\"data:image/png;base64,{}\" alt=\"{}\">", base64(picture.png),
+                    html_text(section.title + ": " + picture.title));
+    // The first two maps are shown, others on demand.
+    text += i == 0 ? image
+                   : fmt::format("<details{}><summary>{}</summary>{}</details>", i <= 2 ? " open" : "",
+                                 html_text(picture.title), image);
+  }
+  if (of_heading || text.empty()) return text;
+  return "<div class=\"block maps\"><h3>Where the work is</h3>" + text + "</div>\n";
+}
+
 std::string section_html(const Report& report, std::size_t index) {
   const ReportSection& section = report.sections[index];
   const Record& first = section.records.front();
   std::string text = fmt::format(
-      "<section class=\"scene\" id=\"scene-{0}\" data-section=\"{0}\"><header><h2>{1}</h2>"
+      "<section class=\"scene\" id=\"scene-{0}\" data-section=\"{0}\"><header>{9}<h2>{1}</h2>"
       "<p class=\"sub\">{2}{3}{4} primitives · scene hash <code>{5}</code> · {6} thread{7} · {8} "
       "order</p></header>\n",
       index, html_text(section.title),
       section.setting.empty() ? "" : "<b>" + html_text(section.setting) + "</b> · ",
       section.scene == section.title ? "" : "<code>" + html_text(section.scene) + "</code> · ",
       grouped(first.primitives.value_or(0)), html_text(first.scene_hash), first.threads.value_or(1),
-      first.threads.value_or(1) == 1 ? "" : "s", html_text(first.order));
+      first.threads.value_or(1) == 1 ? "" : "s", html_text(first.order), pictures_html(section, true));
   const std::string baseline = report.specs[section.baseline].label;
   text += figure(report, "ratio", index, "Throughput over that of " + baseline,
                  "ratio, with its " + interval_words(section), ratio_table(report, section));
+  const std::vector<Sweep> swept = sweeps(report, section);
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const Table table = sweep_table(report, section, swept[i]);
+    text += figure(report, "sweep", index, table.caption, "the least of each curve is marked", table, i);
+  }
   text += "<div class=\"block\"><h3>Build, memory, throughput</h3>" +
           html_table(report, build_table(report, section)) + "</div>\n";
   text +=
@@ -97,11 +119,7 @@ std::string section_html(const Report& report, std::size_t index) {
   text += figure(report, "work", index, "Work per ray",
                  "dot: mean; bar: median to 99th percentile; tick: 90th; line: to the maximum",
                  work_table(report, section));
-  const std::vector<Sweep> swept = sweeps(report, section);
-  for (std::size_t i = 0; i < swept.size(); ++i) {
-    const Table table = sweep_table(report, section, swept[i]);
-    text += figure(report, "sweep", index, table.caption, "the least of each curve is marked", table, i);
-  }
+  text += pictures_html(section, false);
   const std::vector<std::string> said = remarks(report, section);
   if (!said.empty()) {
     text += "<div class=\"block remarks\"><h3>Remarks</h3><ul>";

@@ -86,9 +86,6 @@ Table overview_table(const Report& report) {
       return ratio ? ratio->low : 0;
     };
     const double level = level_to_reach(section.specs, low);
-    double most = 0;
-    for (const std::size_t spec : specs)
-      if (const auto ratio = mean_ratio(section, spec)) most = std::max(most, ratio->value);
     TableRow row;
     row.section = i;
     row.cells.push_back({section.title + (section.setting.empty() ? "" : " (" + section.setting + ")")});
@@ -97,7 +94,6 @@ Table overview_table(const Report& report) {
       TableCell cell{"-", Mark::plain, spec};
       if (ratio) {
         cell.text = three_digits(ratio->value);
-        cell.share = ratio->value / most;
         if (ratio->high >= level) cell.mark = Mark::best;
       }
       const Record* record = any_record(section, spec);

@@ -14,7 +14,6 @@ struct TableCell {
   std::string text;
   Mark mark = Mark::plain;
   std::optional<std::size_t> spec = {};  ///< of a report: lets the page filter columns
-  std::optional<double> share = {};      ///< 0..1: a bar behind the text, where a page can show one
 };
 
 struct TableColumn {

@@ -106,6 +106,7 @@ const leastMarks = {
   afterDatasetsDraw(chart) {
     const { ctx, chartArea } = chart;
     ctx.save();
+    const said = [];  // places of labels: one for curves that have their least at the same place
     ctx.font = `600 11px ${Chart.defaults.font.family}`;
     chart.data.datasets.forEach((dataset, i) => {
       if (dataset.least === undefined || dataset.least < 0) return;
@@ -116,6 +117,8 @@ const leastMarks = {
       ctx.arc(x, y, 6, 0, 7);
       ctx.stroke();
       ctx.textAlign = x > chartArea.right - 40 ? "right" : x < chartArea.left + 20 ? "left" : "center";
+      if (said.some((place) => Math.abs(place.x - x) < 1 && Math.abs(place.y - y) < 40)) return;
+      said.push({ x, y });
       ctx.fillText(brief(dataset.data[dataset.least].x), x, y > chartArea.bottom - 24 ? y - 11 : y + 17);
     });
     ctx.restore();

@@ -32,6 +32,20 @@ TEST(HtmlText, EscapesAllThatIsMarkup) {
   EXPECT_EQ(json_in_script(R"({"a":"</script><!--"})"), R"({"a":"\u003c/script>\u003c!--"})");
 }
 
+TEST(HtmlText, Base64) {
+  const char* cases[][2] = {{"", ""},        {"f", "Zg=="},        {"fo", "Zm8="},
+                            {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"\xff\xfe\xfb", "//77"}};
+  for (const auto& [bytes, text] : cases) EXPECT_EQ(base64(bytes), text);
+}
+
+TEST(ReportPage, ShowsPictures) {
+  Report report = report_of(report_records({"a"}));
+  report.sections[0].pictures = {{"picture", "foo"}, {"<steps>", "foob"}};
+  const std::string page = report_page(report);
+  EXPECT_THAT(page, HasSubstr("<img src=\"data:image/png;base64,Zm9v\" alt=\"a: picture\">"));
+  EXPECT_THAT(page, HasSubstr("<summary>&lt;steps&gt;</summary><img src=\"data:image/png;base64,Zm9vYg==\""));
+}
+
 TEST(ReportPage, NamesAreTextWhateverIsInThem) {
   const std::string page = report_page(report_of(report_records({hostile})));
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
