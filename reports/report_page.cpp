@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "reports/html/page_template.h"
 #include "reports/html_text.h"
 #include "reports/record_text.h"
@@ -91,18 +93,40 @@ std::string pictures_html(const ReportSection& section, bool of_heading) {
   return "<div class=\"block maps\"><h3>Where the work is</h3>" + text + "</div>\n";
 }
 
+/// The structures of a scene from fast to slow, by their mean ratio over the ray kinds.
+std::string ranking_html(const Report& report, const ReportSection& section) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (const std::size_t spec : section.specs)
+    if (const auto ratio = mean_ratio(section, spec)) order.emplace_back(-ratio->value, spec);
+  std::ranges::sort(order);
+  std::string text;
+  for (const auto& [negative, spec] : order) {
+    const auto ratio = mean_ratio(section, spec);
+    text += fmt::format("<li data-spec=\"{}\">{}{} <b>{}</b> <span class=\"unit\">{}–{}</span></li>", spec,
+                        swatch(report, spec), html_text(report.specs[spec].label), three_digits(ratio->value),
+                        three_digits(ratio->low), three_digits(ratio->high));
+  }
+  if (text.empty()) return "";
+  return fmt::format(
+      "<p class=\"note\">From fast to slow, throughput over that of {} on {}:</p><ol "
+      "class=\"ranking\">{}</ol>",
+      html_text(report.specs[section.baseline].label),
+      section.batches.size() == 1 ? "these rays" : "all kinds of rays (geometric mean)", text);
+}
+
 std::string section_html(const Report& report, std::size_t index) {
   const ReportSection& section = report.sections[index];
   const Record& first = section.records.front();
   std::string text = fmt::format(
       "<section class=\"scene\" id=\"scene-{0}\" data-section=\"{0}\"><header>{9}<h2>{1}</h2>"
       "<p class=\"sub\">{2}{3}{4} primitives · scene hash <code>{5}</code> · {6} thread{7} · {8} "
-      "order</p></header>\n",
+      "order</p>{10}</header>\n",
       index, html_text(section.title),
       section.setting.empty() ? "" : "<b>" + html_text(section.setting) + "</b> · ",
       section.scene == section.title ? "" : "<code>" + html_text(section.scene) + "</code> · ",
       grouped(first.primitives.value_or(0)), html_text(first.scene_hash), first.threads.value_or(1),
-      first.threads.value_or(1) == 1 ? "" : "s", html_text(first.order), pictures_html(section, true));
+      first.threads.value_or(1) == 1 ? "" : "s", html_text(first.order), pictures_html(section, true),
+      ranking_html(report, section));
   const std::string baseline = report.specs[section.baseline].label;
   text += figure(report, "ratio", index, "Throughput over that of " + baseline,
                  "ratio, with its " + interval_words(section), ratio_table(report, section));
@@ -172,8 +196,8 @@ std::string body(const Report& report) {
   text += "<main>\n<div class=\"first\">" + verdict_html(report);
   if (!report.sections.empty()) {
     text += figure(report, "overview", 0, "At a glance",
-                   "throughput over the baseline's; dot: a scene and ray kind, diamond: geometric mean",
-                   overview_table(report), 0, report.sections.size() > 1);
+                   "ratio to the baseline; dot: a scene and ray kind; diamond: mean", overview_table(report),
+                   0, report.sections.size() > 1);
   }
   text += "</div>\n<div id=\"filters\"></div>\n";
   for (std::size_t i = 0; i < report.sections.size(); ++i) text += section_html(report, i);
