@@ -4,14 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "reports/record_text.h"
-#include "scenes/base/error.h"
-#include "scenes/base/spec.h"
 
 namespace raymeter {
 namespace {
@@ -166,57 +162,6 @@ const Record* envelope(const Report& report, const ReportSection& section, std::
     if (!best || *record->ratio > *best->ratio) best = record;
   }
   return rivals > 1 ? best : nullptr;
-}
-
-std::vector<Sweep> sweeps(const Report& report, const ReportSection& section) {
-  using Parameters = std::vector<std::pair<std::string, std::string>>;
-  std::map<std::size_t, Spec> parsed;
-  std::map<std::pair<std::string, std::string>, std::set<std::string>> values_of;  // structure, parameter
-  for (const std::size_t index : section.specs) {
-    try {
-      parsed[index] = parse_spec(report.specs[index].canonical);
-    } catch (const Error&) {
-      continue;
-    }
-    for (const auto& [name, value] : parsed[index].parameters)
-      values_of[{parsed[index].name, name}].insert(value);
-  }
-
-  std::vector<Sweep> found;
-  for (const auto& [key, values] : values_of) {
-    if (values.size() < 3) continue;
-    const auto& [structure, parameter] = key;
-    std::map<Parameters, std::vector<std::pair<double, std::size_t>>> curves;  // by the other parameters
-    for (const auto& [index, spec] : parsed) {
-      if (spec.name != structure) continue;
-      Parameters others;
-      double value = 0;
-      bool numeric = false;
-      for (const auto& [name, text] : spec.parameters) {
-        if (name != parameter) {
-          others.emplace_back(name, text);
-          continue;
-        }
-        const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-        numeric = status == std::errc() && end == text.data() + text.size();
-      }
-      if (numeric) curves[others].emplace_back(value, index);
-    }
-    for (auto& [others, points] : curves) {
-      if (points.size() < 3) continue;
-      std::ranges::sort(points);
-      Sweep sweep{structure, parameter, "", {}, {}};
-      for (const auto& [name, text] : others)
-        if (values_of[{structure, name}].size() > 1)
-          sweep.fixed += fmt::format("{}{}={}", sweep.fixed.empty() ? "" : ":", name, text);
-      for (const auto& [value, index] : points) {
-        sweep.values.push_back(value);
-        sweep.specs.push_back(index);
-      }
-      found.push_back(std::move(sweep));
-    }
-  }
-  return found;
 }
 
 }  // namespace raymeter

@@ -68,15 +68,4 @@ std::optional<Ratio> mean_ratio(const ReportSection& section, std::size_t spec);
 /// its best. Nothing where only one spec of that kind was raced.
 const Record* envelope(const Report& report, const ReportSection& section, std::size_t batch);
 
-/// A structure over one numeric parameter, all others fixed.
-struct Sweep {
-  std::string structure, parameter;
-  std::string fixed;  ///< the other parameters that vary in the section, as a=1:b=2
-  std::vector<std::size_t> specs;
-  std::vector<double> values;  ///< of the parameter, rising
-};
-
-/// The parameters with three or more values in a section.
-std::vector<Sweep> sweeps(const Report& report, const ReportSection& section);
-
 }  // namespace raymeter

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "reports/record_text.h"
+#include "reports/sweeps.h"
 
 namespace raymeter {
 namespace {
@@ -30,6 +31,13 @@ Json value_of(const Column& column, const Record& record) {
       column.member);
 }
 
+Json sweeps_json(const std::vector<Sweep>& sweeps, const char* of) {
+  Json json = Json::array();
+  for (const Sweep& sweep : sweeps)
+    json.push_back({{"parameter", sweep.parameter}, {of, sweep.indices}, {"values", sweep.values}});
+  return json;
+}
+
 Json section_json(const Report& report, const ReportSection& section) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < section.records.size(); ++i) {
@@ -39,16 +47,13 @@ Json section_json(const Report& report, const ReportSection& section) {
         row.push_back(value_of(column, section.records[i]));
     rows.push_back(std::move(row));
   }
-  Json swept = Json::array();
-  for (const Sweep& sweep : sweeps(report, section))
-    swept.push_back({{"structure", sweep.structure},
-                     {"parameter", sweep.parameter},
-                     {"fixed", sweep.fixed},
-                     {"specs", sweep.specs},
-                     {"values", sweep.values}});
-  return {{"title", section.title},    {"setting", section.setting}, {"baseline", section.baseline},
-          {"specs", section.specs},    {"batches", section.batches}, {"rows", std::move(rows)},
-          {"sweeps", std::move(swept)}};
+  return {{"title", section.title},
+          {"setting", section.setting},
+          {"baseline", section.baseline},
+          {"specs", section.specs},
+          {"batches", section.batches},
+          {"rows", std::move(rows)},
+          {"sweeps", sweeps_json(structure_sweeps(report, section), "specs")}};
 }
 
 }  // namespace
@@ -66,6 +71,7 @@ std::string report_json(const Report& report) {
   json["sections"] = Json::array();
   for (const ReportSection& section : report.sections)
     json["sections"].push_back(section_json(report, section));
+  json["sceneSweeps"] = sweeps_json(scene_sweeps(report), "sections");
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

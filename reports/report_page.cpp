@@ -130,7 +130,7 @@ std::string section_html(const Report& report, std::size_t index) {
   const std::string baseline = report.specs[section.baseline].label;
   text += figure(report, "ratio", index, "Throughput over that of " + baseline,
                  "ratio, with its " + interval_words(section), ratio_table(report, section));
-  const std::vector<Sweep> swept = sweeps(report, section);
+  const std::vector<Sweep> swept = structure_sweeps(report, section);
   for (std::size_t i = 0; i < swept.size(); ++i) {
     const Table table = sweep_table(report, section, swept[i]);
     text += figure(report, "sweep", index, table.caption, "the least of each curve is marked", table, i);
@@ -200,6 +200,13 @@ std::string body(const Report& report) {
                    0, report.sections.size() > 1);
   }
   text += "</div>\n<div id=\"filters\"></div>\n";
+  const std::vector<Sweep> swept = scene_sweeps(report);
+  if (!swept.empty()) text += "<section class=\"scene\"><header><h2>Over the scenes</h2></header>";
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const Table table = scene_sweep_table(report, swept[i]);
+    text += figure(report, "scenes", 0, table.caption, "a line for each structure", table, i);
+  }
+  if (!swept.empty()) text += "</section>\n";
   for (std::size_t i = 0; i < report.sections.size(); ++i) text += section_html(report, i);
   text +=
       "<section class=\"facts\"><h2>Measured on</h2>" + environments_html(report) + "</section>\n</main>\n";

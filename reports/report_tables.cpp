@@ -7,25 +7,10 @@
 #include "harness/statistics.h"
 #include "reports/break_even.h"
 #include "reports/record_text.h"
+#include "reports/table_cells.h"
 
 namespace raymeter {
 namespace {
-
-TableColumn text_column(std::string title) {
-  return {std::move(title), "", false};
-}
-
-TableCell count_cell(const Record::Count& count) {
-  return {count ? grouped(*count) : "-"};
-}
-
-TableCell number_cell(const Record::Number& number, double scale = 1) {
-  return {three_digits(number ? *number * scale : number)};
-}
-
-TableCell megabytes(const Record::Count& bytes) {
-  return {three_digits(bytes ? Record::Number(static_cast<double>(*bytes) / 1e6) : Record::Number())};
-}
 
 std::string interval_of(const Record::Number& low, const Record::Number& high) {
   return low && high ? fmt::format("{}–{}", three_digits(low), three_digits(high)) : "-";
@@ -117,8 +102,9 @@ Table build_table(const Report& report, const ReportSection& section) {
     const Record* any = any_record(section, spec);
     TableRow row;
     row.spec = spec;
-    row.cells = {{report.specs[spec].label}, number_cell(any->build_s, 1e3), megabytes(any->bytes),
-                 megabytes(any->peak_bytes), count_cell(any->cells),         count_cell(any->references)};
+    row.cells = {{report.specs[spec].label}, number_cell(any->build_s, 1e3),
+                 megabytes_cell(any->bytes), megabytes_cell(any->peak_bytes),
+                 count_cell(any->cells),     count_cell(any->references)};
     for (const std::size_t batch : section.batches) {
       const Record* record = section.find(spec, batch);
       if (!record)
@@ -270,45 +256,6 @@ Table break_even_table(const Report& report, const ReportSection& section) {
     }
   }
   table.note = "Time for N rays: build time + N / throughput.";
-  return table;
-}
-
-Table sweep_table(const Report& report, const ReportSection& section, const Sweep& sweep) {
-  Table table;
-  table.caption = fmt::format("{} over {}{}", sweep.structure, sweep.parameter,
-                              sweep.fixed.empty() ? "" : " at " + sweep.fixed);
-  table.columns = {text_column("Rays"), {sweep.parameter, ""}, {"Time", "ns/ray"}, {"Steps", "1/ray"},
-                   {"Tests", "1/ray"},  {"Held", "MB"},        {"Build", "ms"}};
-  for (const std::size_t batch : section.batches) {
-    std::vector<TableRow> rows;
-    std::vector<Record::Number> times, steps, tests;
-    for (std::size_t i = 0; i < sweep.specs.size(); ++i) {
-      const Record* r = section.find(sweep.specs[i], batch);
-      if (!r) continue;
-      times.push_back(r->mrays_per_s ? Record::Number(1e3 / *r->mrays_per_s) : Record::Number());
-      steps.push_back(r->steps_per_ray);
-      tests.push_back(r->tests_per_ray);
-      TableRow row;
-      row.spec = sweep.specs[i];
-      row.batch = batch;
-      row.begins_group = rows.empty();
-      row.cells = {{report.batches[batch].label}, {fmt::format("{}", sweep.values[i])},
-                   number_cell(times.back()),     number_cell(steps.back()),
-                   number_cell(tests.back()),     megabytes(r->bytes),
-                   number_cell(r->build_s, 1e3)};
-      rows.push_back(std::move(row));
-    }
-    std::size_t column = 2;
-    for (const auto& values : {times, steps, tests}) {
-      std::size_t least = values.size();
-      for (std::size_t i = 0; i < values.size(); ++i)
-        if (values[i] && (least == values.size() || *values[i] < *values[least])) least = i;
-      if (least < values.size()) rows[least].cells[column].mark = Mark::best;
-      ++column;
-    }
-    for (TableRow& row : rows) table.rows.push_back(std::move(row));
-  }
-  table.note = "Bold: the least.";
   return table;
 }
 

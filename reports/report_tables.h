@@ -1,5 +1,6 @@
 #pragma once
 #include "reports/report.h"
+#include "reports/sweeps.h"
 #include "reports/table.h"
 
 namespace raymeter {
@@ -20,7 +21,11 @@ Table work_table(const Report& report, const ReportSection& section);
 /// For how many rays each structure is worth its build.
 Table break_even_table(const Report& report, const ReportSection& section);
 
+/// A structure over one of its parameters: time, steps, tests, memory.
 Table sweep_table(const Report& report, const ReportSection& section, const Sweep& sweep);
+
+/// All structures over one parameter of the scenes: time and tests for each ray kind.
+Table scene_sweep_table(const Report& report, const Sweep& sweep);
 
 /// Below the tables, in words: what a number alone would hide. A paragraph each: differences by class,
 /// clamps, failures, noise.

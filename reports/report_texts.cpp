@@ -16,7 +16,8 @@ std::string heading(const ReportSection& section) {
 std::vector<Table> tables_of(const Report& report, const ReportSection& section) {
   std::vector<Table> tables{build_table(report, section), ratio_table(report, section),
                             work_table(report, section), break_even_table(report, section)};
-  for (const Sweep& sweep : sweeps(report, section)) tables.push_back(sweep_table(report, section, sweep));
+  for (const Sweep& sweep : structure_sweeps(report, section))
+    tables.push_back(sweep_table(report, section, sweep));
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
   return tables;
 }
@@ -29,6 +30,7 @@ std::string report_markdown(const Report& report) {
     text += fmt::format("- **{}:** {}\n", markdown_text(finding.head), markdown_text(finding.text));
   text += "\n";
   if (report.sections.size() > 1) text += markdown_table(overview_table(report));
+  for (const Sweep& sweep : scene_sweeps(report)) text += markdown_table(scene_sweep_table(report, sweep));
   for (const ReportSection& section : report.sections) {
     text += fmt::format("## {}\n\n", markdown_text(heading(section)));
     for (const Table& table : tables_of(report, section)) text += markdown_table(table);
@@ -49,6 +51,7 @@ std::string report_latex(const Report& report) {
   std::string text =
       "% Tables by Raymeter. In the preamble: \\usepackage{booktabs} \\usepackage[T1]{fontenc}\n\n";
   if (report.sections.size() > 1) text += latex_table(overview_table(report));
+  for (const Sweep& sweep : scene_sweeps(report)) text += latex_table(scene_sweep_table(report, sweep));
   for (const ReportSection& section : report.sections)
     for (Table& table : tables_of(report, section)) {
       table.caption = heading(section) + ": " + table.caption;

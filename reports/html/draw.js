@@ -106,21 +106,30 @@ const leastMarks = {
   afterDatasetsDraw(chart) {
     const { ctx, chartArea } = chart;
     ctx.save();
-    const said = [];  // places of labels: one for curves that have their least at the same place
     ctx.font = `600 11px ${Chart.defaults.font.family}`;
+    const places = [];
     chart.data.datasets.forEach((dataset, i) => {
       if (dataset.least === undefined || dataset.least < 0) return;
       const { x, y } = chart.getDatasetMeta(i).data[dataset.least];
-      ctx.strokeStyle = ctx.fillStyle = colour("ink");
+      ctx.strokeStyle = colour("ink");
       ctx.lineWidth = 1.5;
       ctx.beginPath();
       ctx.arc(x, y, 6, 0, 7);
       ctx.stroke();
-      ctx.textAlign = x > chartArea.right - 40 ? "right" : x < chartArea.left + 20 ? "left" : "center";
-      if (said.some((place) => Math.abs(place.x - x) < 1 && Math.abs(place.y - y) < 40)) return;
-      said.push({ x, y });
-      ctx.fillText(brief(dataset.data[dataset.least].x), x, y > chartArea.bottom - 24 ? y - 11 : y + 17);
+      // One label for curves that have their least at the same place, beside the outermost ring.
+      const near = places.find((place) => Math.abs(place.x - x) < 1 && y - place.bottom < 40 && place.top - y < 40);
+      if (near) Object.assign(near, { top: Math.min(near.top, y), bottom: Math.max(near.bottom, y) });
+      else places.push({ x, top: y, bottom: y, text: brief(dataset.data[dataset.least].x) });
     });
+    for (const { x, top, bottom, text } of places) {
+      ctx.textAlign = x > chartArea.right - 40 ? "right" : x < chartArea.left + 20 ? "left" : "center";
+      ctx.strokeStyle = colour("paper");
+      ctx.lineWidth = 4;
+      const y = bottom > chartArea.bottom - 24 ? top - 11 : bottom + 19;
+      ctx.strokeText(text, x, y);
+      ctx.fillStyle = colour("ink");
+      ctx.fillText(text, x, y);
+    }
     ctx.restore();
   },
 };

@@ -6,6 +6,7 @@ const builders = {
   work: (section) => workPanels(section),
   "break-even": (section) => breakEvenPanels(section),
   sweep: (section, index) => sweepPanels(section, section.sweeps[index]),
+  scenes: (section, index) => scenePanels(data.sceneSweeps[index]),
 };
 
 const figures = [...document.querySelectorAll("figure[data-chart]")].map((element) => ({
@@ -105,8 +106,9 @@ function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
+const isOfAll = (figure) => ["overview", "scenes"].includes(figure.element.dataset.chart);
 const fileName = (figure, extension) =>
-  `${[figure.element.dataset.chart === "overview" ? "" : figure.section.title, titleOf(figure)].filter(Boolean).join(" ").replace(/[^\p{L}\p{N}.=-]+/gu, "-")}.${extension}`;
+  `${[isOfAll(figure) ? "" : figure.section.title, titleOf(figure)].filter(Boolean).join(" ").replace(/[^\p{L}\p{N}.=-]+/gu, "-")}.${extension}`;
 
 function csvOf(figure) {
   const rows = figure.panels.flatMap((panel) => panel.csv);
@@ -146,7 +148,7 @@ function pictureOf(figure) {
   context.fillRect(0, 0, canvas.width, canvas.height);
   context.fillStyle = colour("ink");
   context.font = `600 16px ${Chart.defaults.font.family}`;
-  context.fillText(figure.element.dataset.chart === "overview" ? titleOf(figure) : `${figure.section.title}: ${titleOf(figure)}`, gap, gap + 14, total - 2 * gap);
+  context.fillText(isOfAll(figure) ? titleOf(figure) : `${figure.section.title}: ${titleOf(figure)}`, gap, gap + 14, total - 2 * gap);
   context.font = `13px ${Chart.defaults.font.family}`;
   for (const key of keys) {
     context.strokeStyle = key.colour;

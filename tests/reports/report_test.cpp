@@ -87,28 +87,5 @@ TEST(Envelope, IsTheBestOfTheBaselinesKindWhereThereAreSeveral) {
   EXPECT_EQ(envelope(report, report.sections[0], 0)->spec, "embree:quality=high");
 }
 
-TEST(Sweeps, AreParametersWithThreeNumbersAndTheRestFixed) {
-  const Report report = report_of(report_records({"a"}));
-  const std::vector<Sweep> found = sweeps(report, report.sections[0]);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].parameter, "amount");
-  EXPECT_THAT(found[0].values, ElementsAre(0.5, 1, 2));
-  EXPECT_THAT(found[0].specs, ElementsAre(0, 1, 2));
-  EXPECT_EQ(found[0].fixed, "");
-}
-
-TEST(Sweeps, OverTwoParametersAreAFamilyOfCurves) {
-  std::vector<Record> records;
-  for (const char* spec :
-       {"t:a=4:b=on", "t:a=4:b=off", "t:a=1:b=on", "t:a=1:b=off", "t:a=2:b=on", "t:a=2:b=off"})
-    records.push_back(report_record("s", spec, "primary", 1));
-  const Report report = report_of(records);
-  const std::vector<Sweep> found = sweeps(report, report.sections[0]);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].fixed, "b=off");
-  EXPECT_THAT(found[0].values, ElementsAre(1, 2, 4));
-  EXPECT_EQ(found[1].fixed, "b=on");
-}
-
 }  // namespace
 }  // namespace raymeter
