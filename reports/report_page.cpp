@@ -84,10 +84,7 @@ std::string pictures_html(const ReportSection& section, bool of_heading) {
     const std::string image =
         fmt::format("<img src=\"data:image/png;base64,{}\" alt=\"{}\">", base64(picture.png),
                     html_text(section.title + ": " + picture.title));
-    // The first two maps are shown, others on demand.
-    text += i == 0 ? image
-                   : fmt::format("<details{}><summary>{}</summary>{}</details>", i <= 2 ? " open" : "",
-                                 html_text(picture.title), image);
+    text += i == 0 ? image : fmt::format("<h4>{}</h4>{}", html_text(picture.title), image);
   }
   if (of_heading || text.empty()) return text;
   return "<div class=\"block maps\"><h3>Where the work is</h3>" + text + "</div>\n";

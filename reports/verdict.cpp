@@ -14,7 +14,12 @@ namespace {
 
 /// "1 scene", "2 scenes".
 std::string counted(std::size_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", grouped(count), noun, count == 1 ? "" : noun.ends_with("ch") ? "es" : "s");
+  return fmt::format("{} {}{}", grouped(count), noun, count == 1 ? "" : "s");
+}
+
+/// Of batches: one is the rays of one kind on one scene.
+std::string sets_of_rays(std::size_t count) {
+  return counted(count, "set") + " of rays";
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -93,7 +98,7 @@ constexpr auto more_first = [](const auto& a, const auto& b) {
   return a.first != b.first ? a.first > b.first : a.second < b.second;
 };
 
-/// Wins by structure, with its best spec where several of its specs win.
+/// Wins by structure; where several of its specs win, the best of them if it stands out.
 Finding fastest(const Report& report, const Tallies& all) {
   std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> wins;  // of its specs, and which
   for (const auto& [spec, tally] : all.of)
@@ -107,16 +112,19 @@ Finding fastest(const Report& report, const Tallies& all) {
     const std::string& best = report.specs[specs[0].second].label;
     std::string name = specs.size() == 1 ? best : structure;
     if (all.batches > 1)
-      name += count < all.batches ? fmt::format(" on {}", count)
-                                  : fmt::format(" on all {}", counted(count, "batch"));
-    if (specs.size() > 1) name += fmt::format(", most often as {}", best);
+      name +=
+          count < all.batches ? fmt::format(" on {}", count) : fmt::format(" on all {}", sets_of_rays(count));
+    if (specs.size() > 1) {
+      const bool differ = all.of.at(specs[0].second).mean() > 1.05 * all.of.at(specs[1].second).mean();
+      name += differ ? fmt::format(", most often as {}", best) : ", in settings that are about level";
+    }
     order.emplace_back(count, name);
   }
   std::ranges::sort(order, more_first);
   std::vector<std::string> names;
   for (const auto& [count, name] : order) names.push_back(name);
   return {"Fastest",
-          listed(names) + (names.size() > 1 ? fmt::format(", of {}.", counted(all.batches, "batch")) : ".")};
+          listed(names) + (names.size() > 1 ? fmt::format(", of {}.", sets_of_rays(all.batches)) : ".")};
 }
 
 /// The best of what is not of the baseline's kind, among those that ran everywhere.
@@ -136,7 +144,7 @@ Finding best_other(const Report& report, const Tallies& all) {
   std::string text = fmt::format("{} traces at {} of the throughput of {}", report.specs[best_spec].label,
                                  three_digits(best->mean()), name);
   if (best->races > 1)
-    text += fmt::format(" (geometric mean of {}; {} to {} on single ones)", counted(best->races, "batch"),
+    text += fmt::format(" (geometric mean of {}; {} to {} on single ones)", sets_of_rays(best->races),
                         three_digits(best->least), three_digits(best->most));
   return {"Best beside it", text + "."};
 }

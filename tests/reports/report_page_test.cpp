@@ -43,7 +43,7 @@ TEST(ReportPage, ShowsPictures) {
   report.sections[0].pictures = {{"picture", "foo"}, {"<steps>", "foob"}};
   const std::string page = report_page(report);
   EXPECT_THAT(page, HasSubstr("<img src=\"data:image/png;base64,Zm9v\" alt=\"a: picture\">"));
-  EXPECT_THAT(page, HasSubstr("<summary>&lt;steps&gt;</summary><img src=\"data:image/png;base64,Zm9vYg==\""));
+  EXPECT_THAT(page, HasSubstr("<h4>&lt;steps&gt;</h4><img src=\"data:image/png;base64,Zm9vYg==\""));
 }
 
 TEST(ReportPage, NamesAreTextWhateverIsInThem) {
@@ -121,7 +121,7 @@ TEST(Verdict, IsPlainNumbers) {
   const Report report = report_of(report_records({"a", "b"}));
   EXPECT_EQ(question(report), "What traces these 2 scenes fastest, and is every answer right?");
   const std::vector<Finding> findings = verdict(report);
-  EXPECT_EQ(findings[0].text, "embree on all 4 batches.");
+  EXPECT_EQ(findings[0].text, "embree on all 4 sets of rays.");
   EXPECT_THAT(findings[1].text, HasSubstr("grid traces at 0.300 of the throughput of embree"));
   EXPECT_THAT(findings[2].text, HasSubstr("none of 20 races is noisy"));
   EXPECT_THAT(findings[3].text,
