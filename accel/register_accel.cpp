@@ -1,3 +1,4 @@
+#include "accel/brick_grid.h"
 #include "accel/octree.h"
 #include "accel/registry.h"
 #include "accel/two_level_grid.h"
@@ -10,6 +11,7 @@ void register_accel(Registry& registry) {
   registry.add(tunable_grid_kind());
   registry.add(octree_kind());
   registry.add(two_level_grid_kind());
+  registry.add(brick_grid_kind());
 }
 
 }  // namespace raymeter

@@ -19,6 +19,8 @@ namespace raymeter {
 /// A triangle is closed; a ray coplanar with it misses; a triangle without area is never hit.
 /// Two triangles that share an edge leave no gap: the sign of an edge is a function of its two vertices.
 float decide(const Ray& ray, const Triangle& triangle);
+/// The same, half the work, for a traceable ray whose line certainly passes through the triangle's inside.
+float decide_inside(const Ray& ray, const Triangle& triangle);
 
 /// Sphere, open cylinder, open cone. Touching counts as a hit. A ray that lies in the surface misses.
 float decide(const Ray& ray, const Quadric& quadric);

@@ -63,8 +63,16 @@ float decide(const Ray& ray, const Triangle& triangle) {
   if (least < -side_error && greatest > side_error) return no_hit;
   if (!(least > side_error || greatest < -side_error)) return decide_exactly(ray, triangle);
 
-  // It passes inside. Where does it meet the plane? t = (a . N) / (d . N).
-  const Vec3d e1 = tb - ta, e2 = tc - ta, n = cross(e1, e2);
+  return decide_inside(ray, triangle);
+}
+
+float decide_inside(const Ray& ray, const Triangle& triangle) {
+  const Vec3d d = to_double(ray.direction);
+  const Vec3d ta = to_double(triangle.a), a = ta - to_double(ray.origin);
+  const double direction_norm = norm(d);
+
+  // Where does it meet the plane? t = (a . N) / (d . N).
+  const Vec3d e1 = to_double(triangle.b) - ta, e2 = to_double(triangle.c) - ta, n = cross(e1, e2);
   const double det = dot(d, n), height = dot(a, n);
   const double area_error = plane_error * norm(e1) * norm(e2);
   const double det_error = area_error * direction_norm, height_error = area_error * norm(a);

@@ -20,8 +20,10 @@
 //
 // General quadrics: filter_general_quadric.cpp.
 #include <algorithm>
+#include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
 
 #include "scenes/geometry/primitives.h"
 #include "scenes/geometry/ray.h"
@@ -48,9 +50,9 @@ bool may_hit(const FilterRay& ray, const GeneralQuadric& quadric, float tmax);
 inline FilterRay::FilterRay(const Ray& given) : ray(given) {
   // Where the direction is denormal the scaled one would not be.
   const Vec3d d{flushed(ray.direction.x), flushed(ray.direction.y), flushed(ray.direction.z)};
-  int exponent = 0;
-  std::frexp(std::abs(d.x) + std::abs(d.y) + std::abs(d.z), &exponent);
-  scale = std::ldexp(1.0, exponent - 1);
+  // The greatest power of two that is not above the norm: its bits less the mantissa.
+  const double norm = double(std::abs(d.x)) + std::abs(d.y) + std::abs(d.z);
+  if (norm > 0) scale = std::bit_cast<double>(std::bit_cast<std::uint64_t>(norm) & ~std::uint64_t{0} << 52u);
   direction = to_float((1 / scale) * d);
   tnear_scaled = ray.tnear >= 0 ? ray.tnear * scale : -std::numeric_limits<double>::infinity();
 }

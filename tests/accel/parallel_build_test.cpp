@@ -112,7 +112,7 @@ TEST(ParallelBuild, EveryStructureCostsTheSameForAnyNumberOfThreads) {
     const Scene scene = open_scene(name);
     const auto rays = hostile_rays(7, 200, scene);
     for (const char* spec : {"grid", "tunable-grid:mailbox=on", "octree", "octree:traversal=top-down",
-                             "two-level-grid", "two-level-grid:threshold=1:fit=box"}) {
+                             "two-level-grid", "two-level-grid:threshold=1:fit=box", "brick-grid"}) {
       const std::string one = seen_from_outside(spec, scene, rays, 1);
       EXPECT_EQ(seen_from_outside(spec, scene, rays, 2), one) << spec << " on " << name;
       EXPECT_EQ(seen_from_outside(spec, scene, rays, 6), one) << spec << " on " << name;

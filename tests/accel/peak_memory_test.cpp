@@ -56,7 +56,7 @@ TEST(PeakMemory, IsWhatTheBuildTakesFromTheSystem) {
        {"soup:triangles=40000", "clusters:objects=40000", "clusters:objects=20000:primitive=cone"}) {
     const Scene scene = open_scene(name);
     for (const char* spec : {"grid", "tunable-grid", "octree", "octree:traversal=top-down:leaf=1",
-                             "two-level-grid", "two-level-grid:threshold=1"}) {
+                             "two-level-grid", "two-level-grid:threshold=1", "brick-grid"}) {
       const std::int64_t before = live;
       most = before;
       const auto structure = build(spec, scene);

@@ -35,7 +35,8 @@ const std::string small = "compare soup:triangles=2000:size=0.05 --size 64x48 --
 TEST_F(Compare, DefaultsRaceAllStructuresOverFourKindsOfRays) {
   const Outcome outcome = run(small + out());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
-  for (const char* name : {"grid ", "tunable-grid", "octree", "two-level-grid", "embree", "counted-bvh"})
+  for (const char* name :
+       {"grid ", "tunable-grid", "octree", "two-level-grid", "brick-grid", "embree", "counted-bvh"})
     EXPECT_THAT(outcome.text, HasSubstr(std::string("\n  ") + name));
   for (const std::string& line : lines_of(outcome.text)) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_THAT(outcome.text, Not(HasSubstr("\r"))) << "a progress bar without a terminal";

@@ -116,7 +116,7 @@ TEST_P(HostileFile, IsReadOrRefusedAsItShould) {
     expect_refused();
   else
     for (const char* structure :
-         {"grid", "tunable-grid", "octree", "two-level-grid", "embree", "counted-bvh"})
+         {"grid", "tunable-grid", "octree", "two-level-grid", "brick-grid", "embree", "counted-bvh"})
       expect_read(structure);
 }
 

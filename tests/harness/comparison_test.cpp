@@ -77,11 +77,11 @@ TEST(Comparison, EveryExactStructureIsRightOnEveryKindOfRay) {
   const Registry registry = full_registry();
   Collector collector;
   const Scene scene = open_scene("soup:triangles=3000:size=0.05");
-  compare_structures(
-      scene, registry,
-      quick_settings({"grid", "tunable-grid", "octree", "two-level-grid", "counted-bvh", "boxed-groups"},
-                     {"primary", "shadow", "reflection", "diffuse", "ao", "random"}),
-      collector);
+  compare_structures(scene, registry,
+                     quick_settings({"grid", "tunable-grid", "octree", "two-level-grid", "brick-grid",
+                                     "counted-bvh", "boxed-groups"},
+                                    {"primary", "shadow", "reflection", "diffuse", "ao", "random"}),
+                     collector);
   EXPECT_EQ(collector.records.size(), 7u * 6u) << "six structures and the baseline, six kinds of rays";
   EXPECT_EQ(collector.refuted, 0u);
   std::set<std::string> keys;

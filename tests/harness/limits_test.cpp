@@ -24,6 +24,8 @@ const std::vector<std::string> all_specs{"grid",
                                          "octree:traversal=top-down",
                                          "two-level-grid",
                                          "two-level-grid:threshold=0:leaf-density=50",
+                                         "brick-grid",
+                                         "brick-grid:cells=1:leaf=1",
                                          "counted-bvh",
                                          "brute-force"};
 
@@ -166,7 +168,7 @@ TEST(Limits, CoincidentPrimitivesTakeMemoryInProportion) {
 
 TEST(Limits, SlowAMillionCoincidentPrimitives) {
   const Scene scene = coincident(1000000);
-  for (const char* spec : {"grid", "octree", "two-level-grid"}) {
+  for (const char* spec : {"grid", "octree", "two-level-grid", "brick-grid"}) {
     // On several threads, all of which want the same cells.
     const auto structure = build_any(spec, scene, 4);
     EXPECT_LE(structure->stats().peak_bytes, allowed_bytes(scene.primitive_count())) << spec;

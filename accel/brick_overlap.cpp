@@ -1,0 +1,147 @@
+#include "accel/brick_overlap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accel/cell_overlap.h"
+
+namespace raymeter {
+namespace {
+
+/// A row of bits, each as wide as four: bit i of a nibble becomes nibble i.
+constexpr std::array<std::uint16_t, 16> widened_nibbles() {
+  std::array<std::uint16_t, 16> table{};
+  for (unsigned bits = 0; bits < 16; ++bits)
+    for (unsigned i = 0; i < 4; ++i)
+      if (bits >> i & 1u) table[bits] = static_cast<std::uint16_t>(table[bits] | 0xfu << (4 * i));
+  return table;
+}
+constexpr std::array<std::uint16_t, 16> widened = widened_nibbles();
+constexpr std::uint64_t each_layer = 0x0001000100010001u, each_row = 0x1111111111111111u;
+
+/// Masks of the cells whose layers on an axis are in a set of four bits.
+std::uint64_t on_x(unsigned layers) {
+  return layers * each_row;
+}
+std::uint64_t on_y(unsigned layers) {
+  return widened[layers] * each_layer;
+}
+std::uint64_t on_z(unsigned layers) {
+  std::uint64_t cells = 0;
+  for (unsigned z = 0; z < 4; ++z)
+    if (layers >> z & 1u) cells |= std::uint64_t{0xffff} << (16 * z);
+  return cells;
+}
+
+}  // namespace
+
+BrickOverlap::BrickOverlap(const BrickNode& brick, const std::array<int, 3>& layers, double margin,
+                           SumsWithin sums_within)
+    : layers_(layers), margin_(margin), sums_within_(sums_within) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    for (int i = 0; i <= 4; ++i) plane_[a][static_cast<std::size_t>(i)] = brick.plane(axis, i);
+    const double low = plane_[a][0], high = plane_[a][static_cast<std::size_t>(layers[a])];
+    centre_[axis] = 0.5 * (low + high);
+    half_[axis] = 0.5 * brick.size[a];
+    // A plane is off from its place by a rounding of its coordinate and one of its offset.
+    margin_ = std::max(margin_, 0x1p-23 * (std::abs(low) + std::abs(high)) + 0x1p-22 * (high - low));
+    for (int i = 0; i < 4; ++i)
+      middle_[a][static_cast<std::size_t>(i)] =
+          static_cast<float>(low + (i + 0.5) * double(brick.size[a]) - centre_[axis]);
+  }
+}
+
+std::uint64_t BrickOverlap::cells_of(const Scene& scene, std::uint32_t primitive) const {
+  const std::uint64_t cells = cells_of(scene.bounds_of(primitive));
+  if ((cells & (cells - 1)) == 0) return cells;
+  if (scene.is_triangle(primitive)) return cells & cells_of(scene.triangle(primitive));
+  return with_overlap(scene, primitive, half_, margin_, [&](const auto& overlap) {
+    std::uint64_t met = 0;
+    for (std::uint64_t rest = cells; rest != 0; rest &= rest - 1) {
+      const auto cell = static_cast<unsigned>(std::countr_zero(rest));
+      const Vec3d centre =
+          centre_ + Vec3d{middle_[0][cell % 4], middle_[1][cell / 4 % 4], middle_[2][cell / 16]};
+      if (overlap.meets(centre)) met |= std::uint64_t{1} << cell;
+    }
+    return met;
+  });
+}
+
+std::uint64_t BrickOverlap::cells_of(const Bounds& box) const {
+  std::array<unsigned, 3> layers{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double low = box.low[axis] - margin_, high = box.high[axis] + margin_;
+    for (int i = 0; i < layers_[a]; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      layers[a] |= unsigned(plane_[a][at] <= high && plane_[a][at + 1] >= low) << i;
+    }
+  }
+  return on_x(layers[0]) & on_y(layers[1]) & on_z(layers[2]);
+}
+
+/// By separating axes: the triangle's plane, and its edges seen along each axis (Akenine-Moeller 2001; the
+/// latter as Schwarz & Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", 2010, in three planes
+/// of sixteen cells each).
+std::uint64_t BrickOverlap::cells_of(const Triangle& triangle) const {
+  // Relative to the brick's centre, in double until what is small has been subtracted.
+  const Vec3d a = to_double(triangle.a) - centre_, b = to_double(triangle.b) - centre_,
+              c = to_double(triangle.c) - centre_;
+  const Vec3d e1 = b - a, e2 = c - a, e3 = c - b;
+  // Sums of floats along an axis n are off by a few 2^-24 of n . (what is summed).
+  const Vec3d reach = half_ + Vec3d{margin_, margin_, margin_};
+  constexpr double rounding = 0x1p-20;
+
+  std::uint64_t cells = ~std::uint64_t{0};
+  const auto edge = [&](const Vec3d& e, int i, int j, unsigned& within) {
+    const double ni = -e[j], nj = e[i];
+    const double pa = ni * a[i] + nj * a[j], pb = ni * b[i] + nj * b[j], pc = ni * c[i] + nj * c[j];
+    double low = std::min({pa, pb, pc}), high = std::max({pa, pb, pc});
+    const double wide = std::abs(ni) * 4 * reach[i] + std::abs(nj) * 4 * reach[j];
+    const double grow = std::abs(ni) * reach[i] + std::abs(nj) * reach[j] + rounding * wide;
+    low -= grow, high += grow;
+    // Beyond what sums reach it makes no difference, and floats keep their precision.
+    low = std::clamp(low, -2 * wide, 2 * wide), high = std::clamp(high, -2 * wide, 2 * wide);
+    std::array<float, 4> along_i, along_j;
+    for (std::size_t k = 0; k < 4; ++k) {
+      along_i[k] = static_cast<float>(ni * middle_[static_cast<std::size_t>(i)][k]);
+      along_j[k] = static_cast<float>(nj * middle_[static_cast<std::size_t>(j)][k]);
+    }
+    within &= sums_within_(along_i, along_j, static_cast<float>(low), static_cast<float>(high));
+  };
+  unsigned xy = 0xffff, xz = 0xffff, yz = 0xffff;
+  for (const Vec3d& e : {e1, e2, e3}) {
+    edge(e, 0, 1, xy);
+    edge(e, 0, 2, xz);
+    edge(e, 1, 2, yz);
+  }
+  cells &= xy * each_layer;
+  std::uint64_t by_xz = 0, by_yz = 0;
+  for (unsigned z = 0; z < 4; ++z) {
+    by_xz |= ((xz >> (4 * z) & 0xfu) * std::uint64_t{0x1111}) << (16 * z);
+    by_yz |= std::uint64_t{widened[yz >> (4 * z) & 0xfu]} << (16 * z);
+  }
+  cells &= by_xz & by_yz;
+
+  const Vec3d n = cross(e1, e2);
+  const double wide = std::abs(n.x) * 4 * reach.x + std::abs(n.y) * 4 * reach.y + std::abs(n.z) * 4 * reach.z;
+  const double grow =
+      std::abs(n.x) * reach.x + std::abs(n.y) * reach.y + std::abs(n.z) * reach.z + rounding * wide;
+  const double at = dot(n, a);
+  const double low = std::clamp(at - grow, -2 * wide, 2 * wide),
+               high = std::clamp(at + grow, -2 * wide, 2 * wide);
+  std::array<std::array<float, 4>, 3> along;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t k = 0; k < 4; ++k)
+      along[axis][k] = static_cast<float>(n[static_cast<int>(axis)] * middle_[axis][k]);
+  for (unsigned z = 0; z < 4; ++z) {
+    const float there = along[2][z];
+    const std::uint64_t row =
+        sums_within_(along[0], along[1], static_cast<float>(low) - there, static_cast<float>(high) - there);
+    cells &= ~(std::uint64_t{0xffff} << (16 * z)) | row << (16 * z);
+  }
+  return cells;
+}
+
+}  // namespace raymeter

@@ -1,0 +1,102 @@
+#include "accel/brick_grid.h"
+
+#include <gmock/gmock.h>
+
+#include "accel/brick_kernels.h"
+#include "scenes/open_scene.h"
+#include "tests/accel/grid_tests.h"
+
+namespace raymeter {
+namespace {
+
+/// For every instruction set of this CPU.
+class BrickGrid : public testing::TestWithParam<const BrickKernels*> {
+ protected:
+  std::string spec(const std::string& arguments) const {
+    return std::string("brick-grid:isa=") + GetParam()->isa + (arguments.empty() ? "" : ":") + arguments;
+  }
+};
+
+TEST_P(BrickGrid, AnswersLikeBruteForce) {
+  const std::string specs[] = {
+      spec(""),
+      spec("cells=1:leaf=1"),
+      spec("cells=2x3x1:leaf=2"),
+      spec("density=4:leaf=4"),
+      spec("cells=1:leaf=8"),
+  };
+  expect_brute_force_on_many_scenes(specs, 700);
+}
+
+TEST_P(BrickGrid, AnswersLikeBruteForceInDeepTrees) {
+  for (const char* name :
+       {"soup:triangles=1500", "clusters:objects=1500", "terrain:triangles=1500", "slivers:triangles=700",
+        "stadium:triangles=1500", "clusters:objects=500:primitive=sphere"}) {
+    const Scene scene = open_scene(name);
+    const auto rays = hostile_rays(3, 150, scene);
+    for (const char* arguments : {"", "cells=1", "cells=1:leaf=2", "density=0.5"})
+      ASSERT_NO_FATAL_FAILURE(
+          expect_brute_force(*build(spec(arguments), scene), scene, rays, spec(arguments) + " on " + name));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllTargets, BrickGrid, testing::ValuesIn(brick_kernels()), [](const auto& test) {
+  std::string name = test.param->isa;
+  std::erase(name, '.');
+  return name;
+});
+
+TEST(BrickGridBuild, IsTheSameForAllInstructionSets) {
+  const Scene scene = open_scene("clusters:objects=3000");
+  const auto reference = build("brick-grid", scene)->stats();
+  EXPECT_GT(reference.depth, 1u);
+  for (const BrickKernels* const kernels : brick_kernels()) {
+    const auto stats = build(std::string("brick-grid:isa=") + kernels->isa, scene)->stats();
+    EXPECT_EQ(stats.isa, kernels->isa);
+    EXPECT_EQ(stats.cells, reference.cells);
+    EXPECT_EQ(stats.inner_nodes, reference.inner_nodes);
+    EXPECT_EQ(stats.references, reference.references);
+    EXPECT_EQ(stats.bytes, reference.bytes);
+  }
+}
+
+TEST(BrickGridBuild, CountsByHand) {
+  // One root, split by force: two occupied cells with a triangle each.
+  const Scene scene = two_walls();
+  const auto bricks = build("brick-grid:cells=1:leaf=1", scene);
+  const StructureStats stats = bricks->stats();
+  EXPECT_EQ(stats.inner_nodes, 1u);
+  EXPECT_EQ(stats.depth, 2u);
+  EXPECT_EQ(stats.references, stats.cells);  // each leaf holds one of them
+  EXPECT_GE(stats.references, 2u);
+
+  // Tests the first wall in vain, hits the second.
+  RayCounters c = count(*bricks, {{-1, 0.7f, 0.8f}, 0, {1, 0, 0}});
+  EXPECT_EQ(c.steps, 2u);  // the root, and the second wall's leaf: the first's cells there are empty
+  EXPECT_EQ(c.test_blocks, 1u);
+  EXPECT_EQ(c.tests, 1u);
+  EXPECT_EQ(c.decides, 1u);
+  // Hits the first wall, and does not go on to the second.
+  c = count(*bricks, {{-1, 0.2f, 0.3f}, 0, {1, 0, 0}});
+  EXPECT_EQ(c.steps, 2u);
+  EXPECT_EQ(c.tests, 1u);
+  // Passes beside both.
+  c = count(*bricks, {{-1, 5, 5}, 0, {1, 0, 0}});
+  EXPECT_EQ(c.steps, 0u);
+}
+
+TEST(BrickGridBuild, SplitsWhatIsCrowdedAndNotWhatIsNot) {
+  const Scene few = open_scene("soup:triangles=16");
+  EXPECT_EQ(build("brick-grid:cells=1", few)->stats().inner_nodes, 0u);
+  const Scene many = open_scene("soup:triangles=3000");
+  EXPECT_GT(build("brick-grid:cells=1", many)->stats().inner_nodes, 0u);
+}
+
+TEST(BrickGridBuild, RefusesWhatItCanNotDo) {
+  const Scene scene = open_scene("soup:triangles=2000");
+  EXPECT_THROW(build("brick-grid", scene, 50'000), MemoryLimitExceeded);
+  EXPECT_THROW(build("brick-grid:isa=mmx", scene), Error);
+}
+
+}  // namespace
+}  // namespace raymeter
