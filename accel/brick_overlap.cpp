@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "accel/cell_overlap.h"
 
@@ -33,6 +34,28 @@ std::uint64_t on_z(unsigned layers) {
   return cells;
 }
 
+/// Where along an axis the centre of a cell must lie, from the brick's centre, if the cell is to meet a
+/// triangle. In units in which the brick is about 4 wide along the axis, whatever the sizes: floats then
+/// neither overflow nor are flushed, and `rounding` pays for theirs.
+struct Slab {
+  float low, high;
+  double per_unit;
+
+  /// `reach`: how far a cell reaches from its centre; low and high: how far the triangle does.
+  Slab(double reach, double from, double to) : per_unit(1 / reach) {
+    constexpr double rounding = 0x1p-18, beyond = 64;  // no cell's centre is farther than 4 reaches
+    low = static_cast<float>(std::clamp((from - reach) * per_unit - rounding, -beyond, beyond));
+    high = static_cast<float>(std::clamp((to + reach) * per_unit + rounding, -beyond, beyond));
+  }
+  /// False of an axis without length.
+  bool separates() const { return per_unit < std::numeric_limits<double>::infinity(); }
+  std::array<float, 4> of(double n, const std::array<double, 4>& middle) const {
+    std::array<float, 4> along;
+    for (std::size_t k = 0; k < 4; ++k) along[k] = static_cast<float>(n * middle[k] * per_unit);
+    return along;
+  }
+};
+
 }  // namespace
 
 BrickOverlap::BrickOverlap(const BrickNode& brick, const std::array<int, 3>& layers, double margin,
@@ -47,8 +70,7 @@ BrickOverlap::BrickOverlap(const BrickNode& brick, const std::array<int, 3>& lay
     // A plane is off from its place by a rounding of its coordinate and one of its offset.
     margin_ = std::max(margin_, 0x1p-23 * (std::abs(low) + std::abs(high)) + 0x1p-22 * (high - low));
     for (int i = 0; i < 4; ++i)
-      middle_[a][static_cast<std::size_t>(i)] =
-          static_cast<float>(low + (i + 0.5) * double(brick.size[a]) - centre_[axis]);
+      middle_[a][static_cast<std::size_t>(i)] = low + (i + 0.5) * double(brick.size[a]) - centre_[axis];
   }
 }
 
@@ -89,26 +111,17 @@ std::uint64_t BrickOverlap::cells_of(const Triangle& triangle) const {
   const Vec3d a = to_double(triangle.a) - centre_, b = to_double(triangle.b) - centre_,
               c = to_double(triangle.c) - centre_;
   const Vec3d e1 = b - a, e2 = c - a, e3 = c - b;
-  // Sums of floats along an axis n are off by a few 2^-24 of n . (what is summed).
   const Vec3d reach = half_ + Vec3d{margin_, margin_, margin_};
-  constexpr double rounding = 0x1p-20;
 
   std::uint64_t cells = ~std::uint64_t{0};
   const auto edge = [&](const Vec3d& e, int i, int j, unsigned& within) {
     const double ni = -e[j], nj = e[i];
     const double pa = ni * a[i] + nj * a[j], pb = ni * b[i] + nj * b[j], pc = ni * c[i] + nj * c[j];
-    double low = std::min({pa, pb, pc}), high = std::max({pa, pb, pc});
-    const double wide = std::abs(ni) * 4 * reach[i] + std::abs(nj) * 4 * reach[j];
-    const double grow = std::abs(ni) * reach[i] + std::abs(nj) * reach[j] + rounding * wide;
-    low -= grow, high += grow;
-    // Beyond what sums reach it makes no difference, and floats keep their precision.
-    low = std::clamp(low, -2 * wide, 2 * wide), high = std::clamp(high, -2 * wide, 2 * wide);
-    std::array<float, 4> along_i, along_j;
-    for (std::size_t k = 0; k < 4; ++k) {
-      along_i[k] = static_cast<float>(ni * middle_[static_cast<std::size_t>(i)][k]);
-      along_j[k] = static_cast<float>(nj * middle_[static_cast<std::size_t>(j)][k]);
-    }
-    within &= sums_within_(along_i, along_j, static_cast<float>(low), static_cast<float>(high));
+    const Slab slab(std::abs(ni) * reach[i] + std::abs(nj) * reach[j], std::min({pa, pb, pc}),
+                    std::max({pa, pb, pc}));
+    if (!slab.separates()) return;
+    within &= sums_within_(slab.of(ni, middle_[static_cast<std::size_t>(i)]),
+                           slab.of(nj, middle_[static_cast<std::size_t>(j)]), slab.low, slab.high);
   };
   unsigned xy = 0xffff, xz = 0xffff, yz = 0xffff;
   for (const Vec3d& e : {e1, e2, e3}) {
@@ -125,21 +138,14 @@ std::uint64_t BrickOverlap::cells_of(const Triangle& triangle) const {
   cells &= by_xz & by_yz;
 
   const Vec3d n = cross(e1, e2);
-  const double wide = std::abs(n.x) * 4 * reach.x + std::abs(n.y) * 4 * reach.y + std::abs(n.z) * 4 * reach.z;
-  const double grow =
-      std::abs(n.x) * reach.x + std::abs(n.y) * reach.y + std::abs(n.z) * reach.z + rounding * wide;
   const double at = dot(n, a);
-  const double low = std::clamp(at - grow, -2 * wide, 2 * wide),
-               high = std::clamp(at + grow, -2 * wide, 2 * wide);
-  std::array<std::array<float, 4>, 3> along;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t k = 0; k < 4; ++k)
-      along[axis][k] = static_cast<float>(n[static_cast<int>(axis)] * middle_[axis][k]);
+  const Slab slab(std::abs(n.x) * reach.x + std::abs(n.y) * reach.y + std::abs(n.z) * reach.z, at, at);
+  if (!slab.separates()) return cells;
+  const auto along_x = slab.of(n.x, middle_[0]), along_y = slab.of(n.y, middle_[1]),
+             along_z = slab.of(n.z, middle_[2]);
   for (unsigned z = 0; z < 4; ++z) {
-    const float there = along[2][z];
-    const std::uint64_t row =
-        sums_within_(along[0], along[1], static_cast<float>(low) - there, static_cast<float>(high) - there);
-    cells &= ~(std::uint64_t{0xffff} << (16 * z)) | row << (16 * z);
+    const std::uint64_t layer = sums_within_(along_x, along_y, slab.low - along_z[z], slab.high - along_z[z]);
+    cells &= ~(std::uint64_t{0xffff} << (16 * z)) | layer << (16 * z);
   }
   return cells;
 }

@@ -33,7 +33,7 @@ class BrickOverlap {
   SumsWithin sums_within_;
   Vec3d centre_, half_;  // of the brick; of a cell
   std::array<std::array<double, 5>, 3> plane_;
-  std::array<std::array<float, 4>, 3> middle_{};  // of cells, from centre_
+  std::array<std::array<double, 4>, 3> middle_{};  // of cells, from centre_
 };
 
 }  // namespace raymeter

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "accel/brick_kernels.h"
+#include "scenes/base/error.h"
 #include "scenes/open_scene.h"
 #include "tests/accel/grid_tests.h"
 
