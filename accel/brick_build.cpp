@@ -25,7 +25,7 @@ constexpr double leaf_chance = 0.6;
 /// How much dearer a split is for each reference that it makes of one, for what leaves the cache.
 constexpr double duplication_cost = 0.2;
 /// No primitive gets more references than this from splits that each seem worth it.
-constexpr double most_duplication = 64;
+constexpr double most_duplication = 8;
 
 double cost_of_leaf(std::size_t primitives, double chance) {
   return node_cost + chance * (leaf_cost + block_cost * std::ceil(double(primitives) / block_size));
@@ -95,7 +95,8 @@ class TreeBuilder {
     }
 
     const double more = split_duplication(count, counts);
-    if (level == deepest_brick || duplication * more > most_duplication ||
+    const bool separates = more < std::popcount(node.occupied);  // not every primitive meets every cell
+    if (!separates || level == deepest_brick || duplication * more > most_duplication ||
         !worth_splitting(node, layers, counts, count, more) || !can_be_split(node, layers)) {
       make_leaf(node, std::span(stack_).subspan(first));
       nodes[index] = node;

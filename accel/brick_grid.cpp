@@ -19,7 +19,9 @@ class BrickGrid final : public Structure {
     bricks_.space = walk_space_of(scene_);
     auto chosen = choose_resolution(top, shape_sizes(scene_),
                                     ResolutionLimits::within(input.memory_limit, 4 * bricks_.space.margin));
-    bricks_.grid = registrable_grid(scene_, bricks_.space, chosen);
+    // Coarser than other grids where primitives are large: a reference here is 40 bytes and no number.
+    const auto limit = std::max<std::uint64_t>(std::uint64_t{1} << 22, 8 * scene_.primitive_count());
+    bricks_.grid = registrable_grid(scene_, bricks_.space, limit, chosen);
     {
       CellLists lists(meter_);
       lists.build(cell_count(chosen.n), scene_.primitive_count(), [&](std::uint32_t p, const auto& add) {

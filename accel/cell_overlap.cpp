@@ -54,8 +54,8 @@ bool SphereOverlap::meets(const Vec3d& centre) const {
   return nearest <= radius_ * radius_ && radius_ * radius_ <= farthest;
 }
 
-CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, ChosenResolution& chosen) {
-  const std::uint64_t limit = registration_limit(scene.primitive_count());
+CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, std::uint64_t limit,
+                          ChosenResolution& chosen) {
   const Resolution asked = chosen.n;
   while (true) {
     const CellGrid grid(space.low, space.high, chosen.n);

@@ -132,7 +132,8 @@ inline std::uint64_t registration_limit(std::uint64_t primitives) {
 
 /// The grid of the chosen resolution over `space`; made coarser, with a note in `chosen`, where registering
 /// the scene's primitives would exceed the limit (many primitives, each as large as the scene).
-CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, ChosenResolution& chosen);
+CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, std::uint64_t limit,
+                          ChosenResolution& chosen);
 
 /// Calls visit(cell) for each cell of the range whose centre satisfies `meets`.
 template <class Meets, class Visit>

@@ -53,7 +53,7 @@ class Registry {
   std::vector<StructureKind> kinds_;
 };
 
-/// grid, tunable-grid, octree, two-level-grid.
+/// grid, tunable-grid, octree, two-level-grid, brick-grid.
 void register_accel(Registry& registry);
 
 }  // namespace raymeter

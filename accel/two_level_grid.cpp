@@ -49,7 +49,7 @@ class TwoLevelGrid final : public PerRayStructure<TwoLevelGrid> {
     auto chosen = choose_resolution(options.top, shape_sizes(scene), limits);
 
     // Register every primitive in the cells of the top level.
-    grid_ = registrable_grid(scene, space_, chosen);
+    grid_ = registrable_grid(scene, space_, registration_limit(scene.primitive_count()), chosen);
     stats_.note = chosen.note;
     top_lists_.build(cell_count(chosen.n), scene.primitive_count(), [&](std::uint32_t p, const auto& add) {
       for_each_cell_of(scene, p, grid_, space_.margin, options.fit, add);

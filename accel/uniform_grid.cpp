@@ -24,7 +24,7 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
     space_ = walk_space_of(scene);
     const auto limits = ResolutionLimits::within(input.memory_limit, 4 * space_.margin);
     auto chosen = choose_resolution(options.rule, shape_sizes(scene), limits);
-    grid_ = registrable_grid(scene, space_, chosen);
+    grid_ = registrable_grid(scene, space_, registration_limit(scene.primitive_count()), chosen);
     lists_.build(cell_count(chosen.n), scene.primitive_count(), [&](std::uint32_t p, const auto& add) {
       for_each_cell_of(scene, p, grid_, space_.margin, options.fit, add);
     });

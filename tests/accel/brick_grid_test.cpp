@@ -62,26 +62,34 @@ TEST(BrickGridBuild, IsTheSameForAllInstructionSets) {
 }
 
 TEST(BrickGridBuild, CountsByHand) {
-  // One root, split by force: two occupied cells with a triangle each.
-  const Scene scene = two_walls();
+  // Two small walls across the x axis, in the first and the last cell of the only brick.
+  SceneData data;
+  data.name = "corners";
+  data.vertices = {{0, 0, 0}, {0, 0.1f, 0}, {0, 0, 0.1f}, {4, 1, 1}, {4, 0.9f, 1}, {4, 1, 0.9f}};
+  data.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const Scene scene(std::move(data));
   const auto bricks = build("brick-grid:cells=1:leaf=1", scene);
   const StructureStats stats = bricks->stats();
   EXPECT_EQ(stats.inner_nodes, 1u);
+  EXPECT_EQ(stats.cells, 2u);
+  EXPECT_EQ(stats.references, 2u);
+  EXPECT_EQ(stats.empty_cells, 0u);
   EXPECT_EQ(stats.depth, 2u);
-  EXPECT_EQ(stats.references, stats.cells);  // each leaf holds one of them
-  EXPECT_GE(stats.references, 2u);
 
-  // Tests the first wall in vain, hits the second.
-  RayCounters c = count(*bricks, {{-1, 0.7f, 0.8f}, 0, {1, 0, 0}});
-  EXPECT_EQ(c.steps, 2u);  // the root, and the second wall's leaf: the first's cells there are empty
-  EXPECT_EQ(c.test_blocks, 1u);
-  EXPECT_EQ(c.tests, 1u);
-  EXPECT_EQ(c.decides, 1u);
-  // Hits the first wall, and does not go on to the second.
-  c = count(*bricks, {{-1, 0.2f, 0.3f}, 0, {1, 0, 0}});
-  EXPECT_EQ(c.steps, 2u);
-  EXPECT_EQ(c.tests, 1u);
-  // Passes beside both.
+  // Hits the one wall or the other: the brick, and the leaf.
+  for (const Vec3& from : {Vec3{-1, 0.02f, 0.03f}, Vec3{-1, 0.98f, 0.97f}}) {
+    const RayCounters c = count(*bricks, {from, 0, {1, 0, 0}});
+    EXPECT_EQ(c.steps, 2u);
+    EXPECT_EQ(c.cell_steps, 1u);
+    EXPECT_EQ(c.test_blocks, 1u);
+    EXPECT_EQ(c.tests, 1u);
+    EXPECT_EQ(c.decides, 1u);
+  }
+  // Passes between them through cells that are empty.
+  RayCounters c = count(*bricks, {{-1, 0.5f, 0.5f}, 0, {1, 0, 0}});
+  EXPECT_EQ(c.steps, 1u);
+  EXPECT_EQ(c.tests, 0u);
+  // Passes beside the scene.
   c = count(*bricks, {{-1, 5, 5}, 0, {1, 0, 0}});
   EXPECT_EQ(c.steps, 0u);
 }

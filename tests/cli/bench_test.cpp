@@ -98,7 +98,7 @@ TEST_F(Bench, DefaultsAreThoseOfCompare) {
   const Outcome outcome = bench(small + " --benchmark_list_tests=true");
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   const auto names = lines_of(outcome.text);
-  EXPECT_EQ(names.size(), 6u * 5u);
+  EXPECT_EQ(names.size(), 7u * 5u);
   for (const std::string& name : names) EXPECT_THAT(name, testing::StartsWith(scene + "/"));
   EXPECT_THAT(names, testing::Contains(scene + "/diffuse/two-level-grid/trace"));
   EXPECT_THAT(names, testing::Each(testing::Not(HasSubstr("brute-force"))));

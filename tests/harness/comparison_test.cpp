@@ -82,7 +82,7 @@ TEST(Comparison, EveryExactStructureIsRightOnEveryKindOfRay) {
                                      "counted-bvh", "boxed-groups"},
                                     {"primary", "shadow", "reflection", "diffuse", "ao", "random"}),
                      collector);
-  EXPECT_EQ(collector.records.size(), 7u * 6u) << "six structures and the baseline, six kinds of rays";
+  EXPECT_EQ(collector.records.size(), 8u * 6u) << "seven structures and the baseline, six kinds of rays";
   EXPECT_EQ(collector.refuted, 0u);
   std::set<std::string> keys;
   for (const Record& record : collector.records) {

@@ -191,7 +191,7 @@ TEST(Limits, AMemoryLimitIsKeptOrRefusedInWords) {
         EXPECT_LE(stats.peak_bytes, limit) << spec;
       } catch (const MemoryLimitExceeded& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("are allowed")) << spec;
-        EXPECT_TRUE(limit < std::uint64_t{1} << 24u || spec.starts_with("octree:leaf=1")) << spec;
+        EXPECT_TRUE(limit < std::uint64_t{1} << 24u || spec.find("leaf=1") != std::string::npos) << spec;
       }
 }
 
