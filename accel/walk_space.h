@@ -76,8 +76,8 @@ inline double latest(float t) {
 inline WalkInterval clip(const WalkRay& walk, const Ray& ray, const Vec3d& low, const Vec3d& high) {
   WalkInterval interval{double(ray.tnear) - double(std::numeric_limits<float>::min()), latest(ray.tfar)};
   for (int axis = 0; axis < 3; ++axis) {
-    // Along an axis on which the ray does not move these are infinite, of one sign where it passes outside; or
-    // NaN where it runs along a plane of the box, which is a margin away from everything.
+    // Along an axis on which the ray does not move these are infinite, of one sign where it passes outside;
+    // or NaN where it runs along a plane of the box, which is a margin away from everything.
     const double t0 = (low[axis] - walk.origin[axis]) * walk.inverse[axis];
     const double t1 = (high[axis] - walk.origin[axis]) * walk.inverse[axis];
     interval.enter = std::max(interval.enter, std::min(t0, t1));
