@@ -13,8 +13,6 @@
 namespace raymeter {
 namespace {
 
-/// The expected cost of a ray in a node that it enters, in cycles; fitted on a prototype. Where it pierces
-/// a leaf, it goes through an occupied cell of it this often.
 /// The expected cost, in cycles, of stepping through a node, of a leaf and of a block of triangles in it:
 /// fitted on a prototype.
 constexpr double node_cost = 55, leaf_cost = 20, block_cost = 34;
@@ -40,7 +38,7 @@ class TreeBuilder {
  public:
   TreeBuilder(const Scene& scene, double margin, const BrickOptions& options, MemoryMeter& meter)
       : nodes(MeteredAllocator<BrickNode>(meter)),
-        words(MeteredAllocator<float>(meter)),
+        words(MeteredAllocator<std::uint32_t>(meter)),
         scene_(scene),
         margin_(margin),
         options_(options),
@@ -56,7 +54,7 @@ class TreeBuilder {
   }
 
   MeteredVector<BrickNode> nodes;
-  MeteredVector<float> words;
+  MeteredVector<std::uint32_t> words;
   std::uint32_t depth = 0;
 
  private:
@@ -195,18 +193,20 @@ class TreeBuilder {
     std::size_t column = 0, other = place + triangle_rows * triangles;
     for (const std::uint32_t p : primitives) {
       if (!scene_.is_triangle(p)) {
-        words[other++] = std::bit_cast<float>(p);
+        words[other++] = p;
         continue;
       }
       const Triangle triangle = scene_.triangle(p);
       std::size_t row = 0;
-      const auto put = [&](float word) { words[place + row++ * triangles + column] = word; };
+      const auto put = [&](auto word) {
+        words[place + row++ * triangles + column] = std::bit_cast<std::uint32_t>(word);
+      };
       for (const Vec3& v : {triangle.a, triangle.b, triangle.c}) {
         put(v.x);
         put(v.y);
         put(v.z);
       }
-      put(std::bit_cast<float>(p));
+      put(p);
       ++column;
     }
   }
@@ -282,7 +282,7 @@ void build_bricks(const Scene& scene, const CellLists& lists, const BrickOptions
     first_node += static_cast<std::uint32_t>(tree.nodes.size());
     first_word += static_cast<std::uint32_t>(tree.words.size());
     MeteredVector<BrickNode>(tree.nodes.get_allocator()).swap(tree.nodes);
-    MeteredVector<float>(tree.words.get_allocator()).swap(tree.words);
+    MeteredVector<std::uint32_t>(tree.words.get_allocator()).swap(tree.words);
   }
 }
 

@@ -17,6 +17,9 @@ class BrickGrid final : public Structure {
             const BrickKernels& kernels)
       : scene_(input.scene), kernels_(kernels), meter_(input.memory_limit), bricks_(meter_) {
     bricks_.space = walk_space_of(scene_);
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::max(-bricks_.space.low[axis], bricks_.space.high[axis]) > 0x1p126)
+        throw Error("brick-grid: coordinates beyond 8.5e+37 would leave the range of floats");
     auto chosen = choose_resolution(top, shape_sizes(scene_),
                                     ResolutionLimits::within(input.memory_limit, 4 * bricks_.space.margin));
     // Coarser than other grids where primitives are large: a reference here is 40 bytes and no number.
@@ -44,7 +47,7 @@ class BrickGrid final : public Structure {
     stats_.peak_bytes = meter_.peak();
     stats_.bytes_by_part = {{"roots", bricks_.roots.capacity() * sizeof(std::uint32_t)},
                             {"nodes", bricks_.nodes.capacity() * sizeof(BrickNode)},
-                            {"leaves", bricks_.words.capacity() * sizeof(float)}};
+                            {"leaves", bricks_.words.capacity() * sizeof(std::uint32_t)}};
   }
 
   void trace_closest(const BatchView& batch, std::span<Hit> hits) const override {

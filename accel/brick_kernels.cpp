@@ -61,8 +61,8 @@ class ClosestHit : public Query {
  public:
   ClosestHit(const Scene& scene, const Ray& ray, Probe& probe) : Query(scene, ray), probe_(probe) {}
 
-  void visit(const BrickNode& leaf, const float* words) {
-    const auto* const ids = reinterpret_cast<const std::uint32_t*>(words + 9 * leaf.triangles);
+  void visit(const BrickNode& leaf, const std::uint32_t* words) {
+    const std::uint32_t* const ids = words + 9 * leaf.triangles;
     for (std::uint32_t first = 0; first < leaf.triangles; first += lanes) {
       probe_.test_block();
       if constexpr (!std::is_same_v<Probe, NoProbe>)
@@ -103,13 +103,14 @@ class ClosestHit : public Query {
  private:
   struct Candidate {
     std::uint32_t primitive;
-    float least, greatest;  // bounds of its t, scaled
-    const float* corners;   // its column of a leaf's rows
-    std::uint32_t count;    // of floats in a row
+    float least, greatest;         // bounds of its t, scaled
+    const std::uint32_t* corners;  // its column of a leaf's rows
+    std::uint32_t count;           // of floats in a row
 
     Triangle triangle() const {
-      const auto corner = [this](std::size_t row) {
-        return Vec3{corners[row * count], corners[(row + 1) * count], corners[(row + 2) * count]};
+      const auto number = [this](std::size_t row) { return std::bit_cast<float>(corners[row * count]); };
+      const auto corner = [&](std::size_t row) {
+        return Vec3{number(row), number(row + 1), number(row + 2)};
       };
       return {corner(0), corner(3), corner(6)};
     }
@@ -155,8 +156,8 @@ class AnyHit : public Query {
  public:
   AnyHit(const Scene& scene, const Ray& ray, Probe& probe) : Query(scene, ray), probe_(probe) {}
 
-  void visit(const BrickNode& leaf, const float* words) {
-    const auto* const ids = reinterpret_cast<const std::uint32_t*>(words + 9 * leaf.triangles);
+  void visit(const BrickNode& leaf, const std::uint32_t* words) {
+    const std::uint32_t* const ids = words + 9 * leaf.triangles;
     for (std::uint32_t first = 0; first < leaf.triangles; first += lanes) {
       probe_.test_block();
       if constexpr (!std::is_same_v<Probe, NoProbe>)
@@ -232,7 +233,8 @@ template <class Query, class Answer, class Probe>
 HWY_INLINE Answer answer(const Bricks& bricks, const Scene& scene, const Ray& ray, Probe& probe) {
   if (!is_traceable(ray)) return {};
   const WalkRay walk(ray);
-  if (ray.tnear < 0 || too_far(walk, bricks.space)) {
+  Query query(scene, ray, probe);
+  if (!BrickRay::takes(query.ray()) || too_far(walk, bricks.space)) {
     if constexpr (std::is_same_v<Answer, Hit>)
       return closest_of_all(scene, ray, probe);
     else
@@ -240,7 +242,6 @@ HWY_INLINE Answer answer(const Bricks& bricks, const Scene& scene, const Ray& ra
   }
   const WalkInterval interval = clip(walk, ray, bricks.space.low, bricks.space.high);
   if (interval.empty()) return {};
-  Query query(scene, ray, probe);
   const BrickRay brick_ray(query.ray());
   walk_cells(bricks.grid, walk, interval, [&](std::uint64_t cell, double, double) {
     const std::uint32_t root = bricks.roots[cell];

@@ -138,8 +138,10 @@ std::uint64_t BrickOverlap::cells_of(const Triangle& triangle) const {
   cells &= by_xz & by_yz;
 
   const Vec3d n = cross(e1, e2);
-  const double at = dot(n, a);
-  const Slab slab(std::abs(n.x) * reach.x + std::abs(n.y) * reach.y + std::abs(n.z) * reach.z, at, at);
+  // The rounded normal is not quite perpendicular to the edges.
+  const double at_a = dot(n, a), at_b = dot(n, b), at_c = dot(n, c);
+  const Slab slab(std::abs(n.x) * reach.x + std::abs(n.y) * reach.y + std::abs(n.z) * reach.z,
+                  std::min({at_a, at_b, at_c}), std::max({at_a, at_b, at_c}));
   if (!slab.separates()) return cells;
   const auto along_x = slab.of(n.x, middle_[0]), along_y = slab.of(n.y, middle_[1]),
              along_z = slab.of(n.z, middle_[2]);

@@ -69,7 +69,7 @@ constexpr std::array<MirrorTables, 8> mirror_tables() {
 }
 inline constexpr std::array<MirrorTables, 8> mirrors = mirror_tables();
 
-/// All t here are for FilterRay's scaled direction, and tnear is not negative.
+/// All t here are for FilterRay's scaled direction.
 ///
 /// Why no cell is missed. Planes and origin are floats; plane - origin, the inverse of the direction, that
 /// with its slack and the product are each off by 2^-24 of themselves, in all by less than `slack`, however
@@ -78,6 +78,11 @@ inline constexpr std::array<MirrorTables, 8> mirrors = mirror_tables();
 /// 0, taken for 2^-127, are paid for by the margin around boxes and cells (brick_build.cpp).
 class BrickRay {
  public:
+  /// Whether what is said above holds for a ray: not where scaling it would leave the range of floats.
+  static bool takes(const FilterRay& ray) {
+    return ray.ray.tnear >= 0 && ray.scale > 0x1p-100 && ray.scale < 0x1p100;
+  }
+
   explicit HWY_INLINE BrickRay(const FilterRay& ray) {
     constexpr float slack = 0x1p-21f, largest = 0x1p127f;
     const Floats d;

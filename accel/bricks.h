@@ -43,7 +43,7 @@ struct alignas(64) BrickNode {
 static_assert(sizeof(BrickNode) == 64);
 
 /// A leaf's words: for its n triangles ten rows of n floats, corners a, b and c (x, y, z each) and the
-/// primitives' indices, bit by bit; then the indices of the others.
+/// primitives' indices; then the indices of the others.
 inline constexpr std::size_t triangle_rows = 10;
 /// The most floats that a kernel reads at once: so many words follow the last leaf.
 inline constexpr std::size_t widest_vector = 16;
@@ -55,13 +55,13 @@ struct Bricks {
   explicit Bricks(MemoryMeter& meter)
       : roots(MeteredAllocator<std::uint32_t>(meter)),
         nodes(MeteredAllocator<BrickNode>(meter)),
-        words(MeteredAllocator<float>(meter)) {}
+        words(MeteredAllocator<std::uint32_t>(meter)) {}
 
   WalkSpace space;
   CellGrid grid;
   MeteredVector<std::uint32_t> roots;  ///< by cell: its root among the nodes, or empty_cell
   MeteredVector<BrickNode> nodes;
-  MeteredVector<float> words;
+  MeteredVector<std::uint32_t> words;
   std::uint32_t depth = 0;  ///< levels of bricks below a root, at most
 };
 

@@ -56,12 +56,12 @@ struct BlockTest {
 };
 
 /// The triangles first, first + 1, ... of a leaf's rows of `count` floats (bricks.h).
-HWY_INLINE BlockTest test_block(const FilterRay& ray, const float* words, std::uint32_t count,
+HWY_INLINE BlockTest test_block(const FilterRay& ray, const std::uint32_t* words, std::uint32_t count,
                                 std::uint32_t first, const FilterInterval& interval) {
   const Floats d;
-  const float* row = words + first;
+  const std::uint32_t* row = words + first;
   const auto next = [&] {
-    const FloatVector vector = hn::LoadU(d, row);
+    const FloatVector vector = hn::BitCast(d, hn::LoadU(hn::Repartition<std::uint32_t, Floats>(), row));
     row += count;
     return vector;
   };

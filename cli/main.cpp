@@ -31,8 +31,8 @@ CLI::App* add_compare(CLI::App& app, raymeter::CompareOptions& o) {
   compare
       ->add_option("--out", o.out,
                    "Folder for report.html, records.jsonl, records.csv and\n"
-                   "environment.json; with\n"
-                   "the records of a killed run in it, the run goes on from there")
+                   "environment.json; with the records of a killed run in it, the run goes\n"
+                   "on from there")
       ->type_name("DIR");
   compare->add_flag("--pictures", o.pictures,
                     "Also render each scene with each structure, and write into\n"
@@ -70,8 +70,8 @@ CLI::App* add_rays(CLI::App& app, raymeter::RaysOptions& o) {
   rays->add_option("-o,--output", o.out, "Replaced when it is there")->required()->type_name("FILE");
   raymeter::add_batch_options(*rays, o.batches);
   rays->footer(
-      "The rays are those of compare with the same options, bit by bit. Exit status: 0, or 2 for bad\n"
-      "usage or input.\n\n"
+      "The rays are those of compare with the same options, bit by bit. Exit status: 0; 1 the hits\n"
+      "that they start from are in doubt; 2 bad usage or input.\n\n"
       "Examples:\n"
       "  raymeter rays teapot.nff -r diffuse:samples=4 -o teapot.rays\n"
       "  raymeter compare teapot.nff --ray-file teapot.rays");

@@ -6,6 +6,7 @@
 #include "scenes/base/error.h"
 #include "scenes/open_scene.h"
 #include "tests/accel/grid_tests.h"
+#include "tests/scenes/geometry/adversary.h"
 
 namespace raymeter {
 namespace {
@@ -101,10 +102,63 @@ TEST(BrickGridBuild, SplitsWhatIsCrowdedAndNotWhatIsNot) {
   EXPECT_GT(build("brick-grid:cells=1", many)->stats().inner_nodes, 0u);
 }
 
+/// A few triangles of which a block's test, or a brick's box, may make the wrong thing; each as the scene's
+/// only leaf, and split by force.
+TEST_P(BrickGrid, AnswersLikeBruteForceToAnAdversary) {
+  for (const auto style : adversary::styles) {
+    Random random(9, unsigned(style));
+    for (int round = 0; round < 150; ++round) {
+      SceneData data;
+      data.name = "adversary";
+      std::vector<Triangle> triangles;
+      for (std::uint32_t i = 0; i < 1 + random.below(20); ++i) {
+        Triangle t = adversary::triangle(random, style);
+        for (Vec3* v : {&t.a, &t.b, &t.c})
+          for (int axis = 0; axis < 3; ++axis) (*v)[axis] = std::clamp((*v)[axis], -1e36f, 1e36f);
+        const auto first = static_cast<std::uint32_t>(data.vertices.size());
+        data.vertices.insert(data.vertices.end(), {t.a, t.b, t.c});
+        data.triangles.push_back({first, first + 1, first + 2});
+        triangles.push_back(t);
+      }
+      const Scene scene(std::move(data));
+      std::vector<Ray> rays;
+      for (int i = 0; i < 24; ++i) {
+        const Triangle& target = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
+        Ray ray = adversary::ray_towards(random, style, adversary::point_on(random, target));
+        adversary::tempt_interval(random, ray, decide(ray, target));
+        rays.push_back(ray);
+      }
+      for (const char* arguments : {"cells=1", "cells=1:leaf=1"})
+        ASSERT_NO_FATAL_FAILURE(expect_brute_force(
+            *build(spec(arguments), scene), scene, rays,
+            spec(arguments) + ", style " + std::to_string(int(style)) + ", round " + std::to_string(round)));
+    }
+  }
+}
+
+TEST_P(BrickGrid, TakesDirectionsOfEveryLength) {
+  const Scene scene = open_scene("soup:triangles=400");
+  auto rays = hostile_rays(5, 400, scene);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3& d = rays[i].direction;
+    const float longest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z), 1e-30f});
+    constexpr float lengths[] = {3e38f, 1e37f, 2e30f, 1e-29f, 1e-36f, 2e-38f};
+    rays[i].direction = lengths[i % std::size(lengths)] * (1 / longest * d);
+    rays[i].tfar = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(rays[i].direction[axis]) < std::numeric_limits<float>::min()) rays[i].direction[axis] = 0;
+  }
+  expect_brute_force(*build(spec("leaf=4"), scene), scene, rays, "lengths");
+}
+
 TEST(BrickGridBuild, RefusesWhatItCanNotDo) {
   const Scene scene = open_scene("soup:triangles=2000");
   EXPECT_THROW(build("brick-grid", scene, 50'000), MemoryLimitExceeded);
-  EXPECT_THROW(build("brick-grid:isa=mmx", scene), Error);
+  SceneData data;
+  data.name = "huge";
+  data.vertices = {{-3e38f, 0, 0}, {3e38f, 0, 0}, {0, 3e38f, 0}};
+  data.triangles = {{0, 1, 2}};
+  EXPECT_THROW(build("brick-grid", Scene(std::move(data))), Error);
 }
 
 }  // namespace

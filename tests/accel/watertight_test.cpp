@@ -7,7 +7,7 @@ namespace {
 
 class Watertight : public testing::TestWithParam<std::string> {};
 
-TEST_P(Watertight, NoRayLeavesAClosedSphere) {
+TEST_P(Watertight, SlowNoRayLeavesAClosedSphere) {
   expect_watertight_everywhere([&](const Scene& scene) { return build(GetParam(), scene); });
 }
 

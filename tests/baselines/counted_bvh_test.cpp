@@ -79,7 +79,7 @@ struct Counts {
   friend bool operator==(const Counts&, const Counts&) = default;
 };
 
-TEST(CountedBvh, IsWatertight) {
+TEST(CountedBvh, SlowIsWatertight) {
   for (const char* spec : {"counted-bvh", "counted-bvh:branching=2"})
     expect_watertight_everywhere([&](const Scene& scene) { return build(spec, scene); });
 }

@@ -23,7 +23,7 @@ double seen(const std::string& name) {
   return static_cast<double>(count_hits(answers)) / static_cast<double>(primary.rays.size());
 }
 
-TEST(GeneratorViews, AtLeastHalfOfThePrimaryRaysHitAtEveryTurnOfTheKnob) {
+TEST(GeneratorViews, SlowAtLeastHalfOfThePrimaryRaysHitAtEveryTurnOfTheKnob) {
   for (const char* name :
        {"soup", "terrain", "clusters", "clusters:clustering=0", "clusters:clustering=1", "crowding",
         "crowding:kappa=1", "crowding:kappa=1e-3", "sizes", "sizes:sigma=0", "sizes:sigma=2", "slivers",

@@ -157,7 +157,7 @@ Scene coincident(std::uint32_t count) {
   return named(std::move(data), "coincident");
 }
 
-TEST(Limits, CoincidentPrimitivesTakeMemoryInProportion) {
+TEST(Limits, SlowCoincidentPrimitivesTakeMemoryInProportion) {
   expect_bounded_and_right(coincident(300), all_specs, 10);
   const Scene scene = coincident(5000), twice = coincident(10000);
   for (const std::string& spec : all_specs) {
