@@ -71,7 +71,14 @@ class Comparer {
 };
 
 void compare_counts(Comparer& comparer, const Record& before, const Record& after) {
-  constexpr std::array<std::pair<std::string_view, Rise>, 20> rises{{
+  constexpr std::array<std::pair<std::string_view, Rise>, 28> rises{{
+      {"right", Rise::better},
+      {"within_bound", Rise::neither},
+      {"tie", Rise::neither},
+      {"edge", Rise::neither},
+      {"grazing", Rise::neither},
+      {"at_limit", Rise::neither},
+      {"degenerate", Rise::neither},
       {"wrong", Rise::worse},
       {"unexplained", Rise::worse},
       {"not_given", Rise::worse},
@@ -85,6 +92,7 @@ void compare_counts(Comparer& comparer, const Record& before, const Record& afte
       {"steps_max", Rise::worse},
       {"tests_max", Rise::worse},
       {"bytes", Rise::worse},
+      {"peak_bytes", Rise::worse},
       {"cells", Rise::neither},
       {"references", Rise::neither},
       {"nx", Rise::neither},
@@ -125,7 +133,8 @@ void compare_times(Comparer& comparer, const Record& before, const Record& after
 }
 
 void compare_builds(Comparer& comparer, const Record& before, const Record& after, double tolerance) {
-  if (!before.build_low_s || !before.build_high_s || !after.build_low_s || !after.build_high_s) return;
+  const auto is_whole = [](const Record& r) { return r.build_s && r.build_low_s && r.build_high_s; };
+  if (!is_whole(before) || !is_whole(after)) return;
   const double factor = 1 + 4 * tolerance;
   const bool slower = *after.build_low_s > *before.build_high_s * factor;
   const bool faster = *after.build_high_s * factor < *before.build_low_s;

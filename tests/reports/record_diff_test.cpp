@@ -51,7 +51,9 @@ TEST(RecordDiff, WhatIsWorse) {
       [](Record& r) { r.wrong = 1; },
       [](Record& r) { r.unexplained = 1; },
       [](Record& r) { r.not_given = 1; },
+      [](Record& r) { r.right = 76799, r.tie = 1; },
       [](Record& r) { r.bytes = 4'500'001; },
+      [](Record& r) { r.peak_bytes = 5'000'001; },
       [](Record& r) { r.tests_max = 72; },
       [](Record& r) { r.status = "failed"; },
       [](Record& r) { r.ray_hash = "other"; },
@@ -61,6 +63,26 @@ TEST(RecordDiff, WhatIsWorse) {
       [](Record& r) { r.build_s = 0.02, r.build_low_s = 0.019, r.build_high_s = 0.021; },
   };
   for (std::size_t i = 0; i < worse.size(); ++i) EXPECT_TRUE(changed(worse[i]).worse()) << i;
+}
+
+TEST(RecordDiff, OtherClassesOfAnswersAreSaidAndNotWorse) {
+  for (const auto member : {&Record::within_bound, &Record::tie, &Record::edge, &Record::grazing,
+                            &Record::at_limit, &Record::degenerate}) {
+    std::vector<Record> before = report_records({"a"}), after = before;
+    before[0].*member = 3;
+    after[0].*member = 4;
+    const RecordDiff diff = diff_of(before, after);
+    EXPECT_FALSE(diff.worse());
+    ASSERT_EQ(diff.changes.size(), 1u);
+    EXPECT_THAT(diff.changes[0].what, HasSubstr(" 3 -> 4"));
+  }
+  EXPECT_FALSE(changed([](Record& r) { r.right = 76801; }).worse());
+}
+
+TEST(RecordDiff, BuildTimesWithoutAMedianAreNotCompared) {
+  EXPECT_TRUE(changed([](Record& r) {
+                r.build_s = {}, r.build_low_s = 0.019, r.build_high_s = 0.021;
+              }).changes.empty());
 }
 
 TEST(RecordDiff, TimesWithinTheNoiseAreNoChange) {
