@@ -1,7 +1,6 @@
 #include "harness/ray_file.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "scenes/base/atomic_file.h"
 #include "scenes/base/error.h"
 #include "scenes/base/hash.h"
 
@@ -40,10 +40,6 @@ static_assert(sizeof(Header) == 48 && std::has_unique_object_representations_v<H
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view what) {
   throw Error(fmt::format("{}: {}", file.string(), what));
-}
-
-[[noreturn]] void fail_to_write(const std::filesystem::path& file) {
-  fail(file, fmt::format("can't be written: {}", std::strerror(errno)));
 }
 
 /// Writes, and remembers the checksum of what was written.
@@ -139,18 +135,14 @@ void write_ray_file(const std::filesystem::path& file, const RayBatch& batch, co
   header.scene_hash = scene.hash();
   header.rays = batch.rays.size();
 
-  const std::filesystem::path temporary = fmt::format("{}.{}.new", file.string(), getpid());
-  Writer writer(temporary);
+  AtomicFile atomic(file);
+  Writer writer(atomic.temporary());
   writer.bytes(&header, sizeof header);
   writer.bytes(kind.data(), kind.size());
   writer.bytes(scene_name.data(), scene_name.size());
   writer.bytes(batch.rays.data(), batch.rays.size() * sizeof(Ray));
-  if (!writer.close() || std::rename(temporary.c_str(), file.c_str()) != 0) {
-    const int why = errno;
-    std::filesystem::remove(temporary, status);
-    errno = why;
-    fail_to_write(file);
-  }
+  if (!writer.close()) fail(file, fmt::format("can't be written: {}", std::strerror(errno)));
+  atomic.commit();
 }
 
 RayBatch read_ray_file(const std::filesystem::path& file, const Scene& scene) {

@@ -3,8 +3,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "reports/atomic_file.h"
 #include "reports/openimageio/picture_module.h"
+#include "scenes/base/atomic_file.h"
 #include "scenes/base/error.h"
 
 namespace raymeter {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "scenes/base/atomic_file.h"
 #include "scenes/base/error.h"
 
 namespace raymeter {
@@ -29,7 +30,9 @@ Json to_json(const Record& record) {
   return object;
 }
 
+/// Throws Error, or Json's exception for what is no text.
 Record from_json(const Json& object) {
+  if (!object.is_object()) throw Error("no object");
   Record record;
   for (const Column& column : columns()) {
     const auto found = object.find(std::string(column.name));
@@ -37,10 +40,16 @@ Record from_json(const Json& object) {
     std::visit(
         [&](auto pointer) {
           auto& value = record.*pointer;
-          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Record::Text>)
+          using Value = std::decay_t<decltype(value)>;
+          if constexpr (std::is_same_v<Value, Record::Text>) {
             value = found->template get<std::string>();
-          else
-            value = found->template get<typename std::decay_t<decltype(value)>::value_type>();
+          } else if constexpr (std::is_same_v<Value, Record::Count>) {
+            if (!found->is_number_unsigned()) throw Error(fmt::format("column {}: not a count", column.name));
+            value = found->template get<std::uint64_t>();
+          } else {
+            if (!found->is_number()) throw Error(fmt::format("column {}: not a number", column.name));
+            value = found->template get<double>();
+          }
         },
         column.member);
   }
@@ -57,12 +66,6 @@ std::string quoted(std::string text) {
   return result + '"';
 }
 
-std::ofstream open_for_writing(const std::filesystem::path& file, std::ios::openmode mode = std::ios::trunc) {
-  std::ofstream stream(file, std::ios::binary | mode);
-  if (!stream) throw Error(fmt::format("{}: can't be written", file.string()));
-  return stream;
-}
-
 /// The records of a file, and the bytes of their lines in `good`. Nothing where there is no file.
 std::vector<Record> read_lines(const std::filesystem::path& file, std::uintmax_t& good) {
   std::vector<Record> records;
@@ -73,7 +76,7 @@ std::vector<Record> read_lines(const std::filesystem::path& file, std::uintmax_t
     good += line.size() + 1;
     try {
       records.push_back(from_json(Json::parse(line)));
-    } catch (const Json::exception& error) {
+    } catch (const std::exception& error) {
       throw error_at_line(file.string(), number, fmt::format("not a record ({})", error.what()));
     }
   }
@@ -95,12 +98,12 @@ Json parse_environments(const std::filesystem::path& file) {
 }  // namespace
 
 void replace_file(const std::filesystem::path& file, const std::string& content) {
-  const std::filesystem::path temporary = file.string() + ".new";
-  std::ofstream stream = open_for_writing(temporary);
+  AtomicFile atomic(file);
+  std::ofstream stream(atomic.temporary(), std::ios::binary);
   stream << content;
   stream.close();
   if (!stream) throw Error(fmt::format("{}: can't be written", file.string()));
-  std::filesystem::rename(temporary, file);
+  atomic.commit();
 }
 
 RecordLog::RecordLog(const std::filesystem::path& file) : file_(file) {
@@ -108,7 +111,8 @@ RecordLog::RecordLog(const std::filesystem::path& file) : file_(file) {
   records_ = read_lines(file, good);
   if (std::filesystem::exists(file) && std::filesystem::file_size(file) != good)
     std::filesystem::resize_file(file, good);
-  stream_ = open_for_writing(file, std::ios::app);
+  stream_.open(file, std::ios::binary | std::ios::app);
+  if (!stream_) throw Error(fmt::format("{}: can't be written", file.string()));
 }
 
 void RecordLog::append(const Record& record) {

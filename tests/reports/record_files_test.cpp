@@ -76,6 +76,31 @@ TEST_F(RecordFiles, ForeignContentIsRefusedWithItsLine) {
   }
 }
 
+TEST_F(RecordFiles, NumbersThatCannotBeAreRefused) {
+  const std::pair<const char*, const char*> cases[] = {
+      {R"({"rays": -1})", "column rays: not a count"},
+      {R"({"rays": 1.5})", "column rays: not a count"},
+      {R"({"rays": 1e300})", "column rays: not a count"},
+      {R"({"rays": "3"})", "column rays: not a count"},
+      {R"({"ratio": null})", "column ratio: not a number"},
+      {R"({"ratio": 1e999})", "not a record ("},
+      {R"({"scene": 3})", "not a record ("},
+      {"[]", "not a record ("},
+  };
+  for (const auto& [line, why] : cases) {
+    std::ofstream(file("records.jsonl")) << line << '\n';
+    try {
+      read_records(file("records.jsonl"));
+      ADD_FAILURE() << "accepted " << line;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("records.jsonl:1: not a record ("));
+      EXPECT_THAT(error.what(), testing::HasSubstr(why));
+    }
+  }
+  std::ofstream(file("records.jsonl")) << R"({"rays": 3, "ratio": 2})" << '\n';
+  EXPECT_EQ(read_records(file("records.jsonl"))[0].rays, 3u);
+}
+
 TEST_F(RecordFiles, EnvironmentsOfOtherMachinesAreKept) {
   using Entries = std::vector<std::pair<std::string, std::string>>;
   write_environment(file("environment.json"), "aa", Entries{{"time", "1"}, {"cpu", "old"}});

@@ -1,4 +1,4 @@
-#include "reports/atomic_file.h"
+#include "scenes/base/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
