@@ -107,7 +107,7 @@ CLI::App* add_render(CLI::App& app, raymeter::RenderOptions& o) {
       ->allow_extra_args(false);
   render->add_option("--size", o.size, "Picture, in pixels [the scene's, or 320x240]")->type_name("WxH");
   render->add_option("--depth", o.depth, "Deepest generation of rays; eye rays are the first")
-      ->check(CLI::Range(1u, 1000u))
+      ->check(CLI::Range(1u, 64u))
       ->capture_default_str();
   render->add_option("--rays", o.rays, "Whose work is counted: all rays of a pixel, or only its primary ray")
       ->check(CLI::IsMember({"all", "primary"}))

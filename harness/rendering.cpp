@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <mutex>
 
@@ -30,11 +31,25 @@ void add(RayCounts& counts, const RayCount& more) {
   count.hits += more.hits;
 }
 
+/// Counts the rays of all tiles, and ends a rendering of too many.
+class RayLimit {
+ public:
+  explicit RayLimit(std::uint64_t most) : most_(most) {}
+  void add(std::uint64_t rays) {
+    if (rays_ += rays; rays_ > most_)
+      throw Error(fmt::format("the picture takes more than {} rays; a smaller depth takes fewer", most_));
+  }
+
+ private:
+  std::uint64_t most_;
+  std::atomic<std::uint64_t> rays_ = 0;
+};
+
 /// One tile of a picture, rendered by one thread.
 class Tile {
  public:
-  Tile(const Scene& scene, const Structure& structure, const RenderSettings& settings)
-      : scene_(scene), structure_(structure), settings_(settings) {}
+  Tile(const Scene& scene, const Structure& structure, const RenderSettings& settings, RayLimit& limit)
+      : scene_(scene), structure_(structure), settings_(settings), limit_(limit) {}
 
   void render(const WhittedSettings& whitted, std::vector<std::uint32_t> pixels) {
     const FlushDenormals mode;
@@ -59,6 +74,7 @@ class Tile {
  private:
   void answer(const WhittedBatch& batch, BatchAnswers& answers) {
     const BatchView view = batch.rays.view();
+    limit_.add(view.rays.size());
     const bool counted = settings_.count && (!settings_.primary_only || batch.purpose == RayPurpose::primary);
     std::vector<RayCounters> counters(counted ? view.rays.size() : 0);
     if (view.query == QueryKind::closest) {
@@ -88,6 +104,7 @@ class Tile {
   const Scene& scene_;
   const Structure& structure_;
   const RenderSettings& settings_;
+  RayLimit& limit_;
   std::vector<std::uint32_t> pixels_;
   std::vector<WhittedPixel> picture_;
   std::vector<PixelWork> work_;
@@ -146,10 +163,11 @@ Rendering render(const Scene& scene, const Structure& structure, const RenderSet
       std::size_t{(size.columns() + tile_side - 1) / tile_side} * ((size.rows() + tile_side - 1) / tile_side);
   std::vector<std::uint64_t> hashes(tiles);
   RayCounts counts;
+  RayLimit limit(most_rays_of(pixels));
   std::mutex mutex;
   std::size_t done = 0;
   const auto render_tile = [&](std::size_t index) {
-    Tile tile(scene, structure, settings);
+    Tile tile(scene, structure, settings, limit);
     tile.render(whitted, tile_pixels(size, index));
     tile.put_into(rendering);
     hashes[index] = tile.hash();

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -45,13 +46,17 @@ struct Rendering {
 
 /// The most pixels of a rendering.
 inline constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26u;
+/// The most rays of a rendering: what mirrors and glass on all sides send on without end.
+inline constexpr std::uint64_t most_rays_of(std::uint64_t pixels) {
+  return std::max(std::uint64_t{1} << 20u, 1024 * pixels);
+}
 /// Throws Error for a picture without pixels or with more than most_pixels.
 void check_picture(const PictureSize& size);
 
 /// Renders with trace_whitted, tile by tile on `threads` threads; the result depends on none of this.
 /// `progress` is told, from any thread but never by two at once, how many of how many tiles are done. Throws
-/// Error for a picture without pixels or with more than most_pixels, for a camera that shows nothing, and for
-/// counting with a structure that can't count.
+/// Error for a picture without pixels or with more than most_pixels, for more rays than most_rays_of its
+/// pixels, for a camera that shows nothing, and for counting with a structure that can't count.
 Rendering render(const Scene& scene, const Structure& structure, const RenderSettings& settings,
                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 

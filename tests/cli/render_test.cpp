@@ -153,6 +153,7 @@ TEST_F(Render, RefusesInOneLineAndWritesNothing) {
   refused(small + "-s griid", "griid");
   refused("render soup --size 60000x60000 -o " + in_folder("a.png"), "67108864 pixels are the most");
   refused("render soup --size 0x5", "--size 0x5");
+  refused(small + "--depth 65", "--depth");
   const std::string hostile = std::string(RAYMETER_SHARED_DATA) + "/hostile/n14_resolution_huge.nff";
   if (std::filesystem::exists(hostile)) {
     refused("render " + hostile + " -o " + in_folder("a.png"), "1000000x1000000 pixels is too large");

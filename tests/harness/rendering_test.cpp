@@ -166,6 +166,25 @@ TEST(Rendering, AMirrorRoomEndsAtTheDepthLimit) {
   EXPECT_EQ(rendering.total(RayPurpose::reflection).rays, 999u * 64u);
 }
 
+/// Balls of glass in a ball of mirror: every generation has almost twice the rays of the one before.
+TEST(Rendering, ARoomOfGlassAndMirrorEndsAtTheMostRays) {
+  const Material mirror{{1, 1, 1}, 0, 0.75f, 1, 0, 1}, glass{{1, 1, 1}, 0, 0, 1, 0.5f, 1.5f};
+  SceneData data;
+  data.materials = {mirror, glass};
+  data.quadric_materials = {0, 1, 1};
+  for (const auto& [x, radius] : {std::pair{0.0f, 10.0f}, {-4.0f, 3.5f}, {4.0f, 3.5f}})
+    data.quadrics.push_back({QuadricKind::sphere, {x, 0, 0}, radius, {}, 0});
+  data.camera = Camera{{0, 5, 5}, {4, 0, 0}, {0, 0, 1}, 60};
+  const Scene scene(std::move(data));
+  try {
+    render(scene, *build_brute_force(scene), {.size = {8, 8}, .depth = 64, .threads = 2});
+    FAIL() << "ended by itself";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("more than 1048576 rays"));
+  }
+  EXPECT_EQ(render(scene, *build_brute_force(scene), {.size = {8, 8}, .depth = 5}).rays.back().depth, 5u);
+}
+
 TEST(Rendering, RefusesPicturesThatAreTooLarge) {
   const Scene scene = spheres();
   const auto brute = build_brute_force(scene);
