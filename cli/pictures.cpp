@@ -13,6 +13,7 @@
 #include "reports/progress_bar.h"
 #include "reports/rendering_pictures.h"
 #include "scenes/base/error.h"
+#include "scenes/base/hash.h"
 
 namespace raymeter {
 namespace {
@@ -98,11 +99,19 @@ std::filesystem::path picture_folder(const std::string& scene, const std::string
 
 std::string as_file_name(std::string_view text) {
   constexpr std::size_t longest = 120;  // names may have 255 bytes, and others are made of this one
+  // A ':' is a '_' where no other '_' is; whatever else is lost is made up for by a hash.
+  const auto has = [](std::string_view some, char c) { return some.find(c) != std::string_view::npos; };
+  bool ambiguous = text.size() > longest || (has(text, ':') && has(text, '_'));
   std::string name(text.substr(0, longest));
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && std::string_view("._=-").find(c) == std::string::npos)
-      c = '_';
-  return name;
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) || has("._=-", c)) continue;
+    ambiguous |= c != ':';
+    c = '_';
+  }
+  if (!ambiguous) return name;
+  Hasher hasher;
+  hasher.text(text);
+  return fmt::format("{}-{:08x}", name, static_cast<std::uint32_t>(hasher.digest()));
 }
 
 }  // namespace raymeter

@@ -42,7 +42,8 @@ void write_pictures(const std::filesystem::path& folder, const Scene& scene, std
 /// `scene_hash` as records hold it.
 std::filesystem::path picture_folder(const std::string& scene, const std::string& scene_hash);
 
-/// A text as part of a file's name: letters, digits, '.', '-', '_' and '=' stay.
+/// A text as part of a file's name: letters, digits, '.', '-', '_' and '=' stay. Ends with a hash of the text
+/// where another one might have the same name.
 std::string as_file_name(std::string_view text);
 
 }  // namespace raymeter
