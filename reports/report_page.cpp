@@ -208,8 +208,8 @@ std::string body(const Report& report) {
   text +=
       "<section class=\"facts\"><h2>Measured on</h2>" + environments_html(report) + "</section>\n</main>\n";
   text += fmt::format(
-      "<footer>Made by Raymeter {}. The records are in records.csv and records.jsonl beside it; "
-      "<code>raymeter list columns</code> says what each column means.</footer>\n",
+      "<footer>Made by Raymeter {}. The records are in records.csv and records.jsonl in the folders of "
+      "the comparisons; <code>raymeter list columns</code> says what each column means.</footer>\n",
       RAYMETER_VERSION);
   return text;
 }
