@@ -131,9 +131,10 @@ class EmbreeBvh {
     bvh_.reset(rtcNewScene(device_.handle()));
     device_.check();
     const std::string& quality = arguments.text("quality");
-    rtcSetSceneBuildQuality(bvh_.get(), quality == "low"      ? RTC_BUILD_QUALITY_LOW
-                                        : quality == "medium" ? RTC_BUILD_QUALITY_MEDIUM
-                                                              : RTC_BUILD_QUALITY_HIGH);
+    quality_ = quality == "low"      ? RTC_BUILD_QUALITY_LOW
+               : quality == "medium" ? RTC_BUILD_QUALITY_MEDIUM
+                                     : RTC_BUILD_QUALITY_HIGH;
+    rtcSetSceneBuildQuality(bvh_.get(), quality_);
     if (arguments.flag("robust")) rtcSetSceneFlags(bvh_.get(), RTC_SCENE_FLAG_ROBUST);
     if (!scene_.triangles().empty()) attach_triangles();
     if (scene_.primitive_count() > scene_.triangle_count()) attach_quadrics();
@@ -180,6 +181,8 @@ class EmbreeBvh {
     attach(quadrics, quadric_geometry);
   }
   void attach(const EmbreeDevice::GeometryHandle& geometry, unsigned id) {
+    // A scene of low quality builds a tree for each geometry, of the quality that *this* asks for.
+    rtcSetGeometryBuildQuality(geometry.get(), quality_);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(bvh_.get(), geometry.get(), id);
     device_.check();
@@ -188,6 +191,7 @@ class EmbreeBvh {
   const Scene& scene_;
   MemoryMeter memory_;
   std::string isa_;
+  RTCBuildQuality quality_ = RTC_BUILD_QUALITY_MEDIUM;
   EmbreeDevice device_;
   EmbreeDevice::SceneHandle bvh_;  // after the device: freed before it
 };

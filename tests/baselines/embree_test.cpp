@@ -89,6 +89,12 @@ TEST(Embree, AgreesWithBruteForceInEveryForm) {
   }
 }
 
+TEST(Embree, LowQualityIsTheTreeOfMortonCodes) {
+  const Scene scene = terrain_scene(1, 100);
+  const auto bytes = [&](const char* spec) { return double(build(spec, scene)->stats().bytes); };
+  EXPECT_GT(bytes("embree:quality=low"), 1.2 * bytes("embree"));  // its leaves are not as full
+}
+
 TEST(Embree, FindsQuadricsToTheBit) {
   const Scene scene = mixed_scene(5, 0, 90);
   const auto rays = random_rays(6, 5000);
