@@ -54,6 +54,30 @@ class Query {
   FilterInterval interval_;
 };
 
+/// A leaf's words (bricks.h).
+struct Leaf {
+  const std::uint32_t* words = nullptr;
+  std::uint32_t triangles = 0, others = 0;
+
+  std::uint32_t triangle(std::uint32_t i) const { return words[9 * triangles + i]; }
+  std::uint32_t other(std::uint32_t i) const { return words[10 * triangles + i]; }
+  Triangle corners(std::uint32_t i) const {
+    const auto number = [&](std::uint32_t row) { return std::bit_cast<float>(words[row * triangles + i]); };
+    const auto corner = [&](std::uint32_t row) {
+      return Vec3{number(row), number(row + 1), number(row + 2)};
+    };
+    return {corner(0), corner(3), corner(6)};
+  }
+};
+
+template <class Probe>
+HWY_INLINE void count_block(const Leaf& leaf, std::uint32_t first, Probe& probe) {
+  probe.test_block();
+  if constexpr (!std::is_same_v<Probe, NoProbe>)
+    for (std::uint32_t i = first; i < std::min<std::uint32_t>(leaf.triangles, first + lanes); ++i)
+      probe.test(leaf.triangle(i));
+}
+
 /// The closest hit. The primitive that is certainly hit, and certainly before all others so far, is decided
 /// in the end: how near it is, is known well enough to end the walk.
 template <class Probe>
@@ -61,37 +85,34 @@ class ClosestHit : public Query {
  public:
   ClosestHit(const Scene& scene, const Ray& ray, Probe& probe) : Query(scene, ray), probe_(probe) {}
 
-  void visit(const BrickNode& leaf, const std::uint32_t* words) {
-    const std::uint32_t* const ids = words + 9 * leaf.triangles;
+  void visit(const Leaf& leaf) {
     for (std::uint32_t first = 0; first < leaf.triangles; first += lanes) {
-      probe_.test_block();
-      if constexpr (!std::is_same_v<Probe, NoProbe>)
-        for (std::uint32_t i = first; i < std::min<std::uint32_t>(leaf.triangles, first + lanes); ++i)
-          probe_.test(ids[i]);
-      const BlockTest test = test_block(ray_, words, leaf.triangles, first, interval_);
+      count_block(leaf, first, probe_);
+      const BlockTest test = test_block(ray_, leaf.words, leaf.triangles, first, interval_);
       std::uint64_t candidates = bits_of(test.candidates);
       if (candidates == 0) continue;
-      const std::uint64_t certain = bits_of(test.certain);
+      const std::uint64_t certain = bits_of(test.certain), inside = bits_of(test.inside);
       alignas(64) float least[lanes], greatest[lanes];
       hn::Store(test.least_t(), Floats(), least);
       hn::Store(test.greatest_t(), Floats(), greatest);
       for (; candidates != 0; candidates &= candidates - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        consider({ids[first + lane], least[lane], greatest[lane], words + first + lane, leaf.triangles},
-                 (certain >> lane & 1u) != 0);
+        const Candidate candidate{leaf.triangle(first + lane), leaf,        first + lane,
+                                  (inside >> lane & 1u) != 0,  least[lane], greatest[lane]};
+        consider(candidate, (certain >> lane & 1u) != 0);
       }
     }
-    const std::uint32_t* const others = ids + leaf.triangles;
     for (std::uint32_t i = 0; i < leaf.others; ++i) {
-      probe_.test(others[i]);
-      if (others[i] == best_.primitive) continue;
+      const std::uint32_t primitive = leaf.other(i);
+      probe_.test(primitive);
+      if (primitive == best_.primitive) continue;
       const float tmax = std::min(best_.t, ray_.ray.tfar);
-      const float t = scene_.visit(others[i], [&](const auto& shape) {
+      const float t = scene_.visit(primitive, [&](const auto& shape) {
         if (!may_hit(ray_, shape, tmax)) return no_hit;
         probe_.decide();
         return decide(ray_.ray, shape);
       });
-      take(t, others[i]);
+      take(t, primitive);
     }
   }
   static constexpr bool done() { return false; }
@@ -102,18 +123,12 @@ class ClosestHit : public Query {
 
  private:
   struct Candidate {
-    std::uint32_t primitive;
-    float least, greatest;         // bounds of its t, scaled
-    const std::uint32_t* corners;  // its column of a leaf's rows
-    std::uint32_t count;           // of floats in a row
-
-    Triangle triangle() const {
-      const auto number = [this](std::size_t row) { return std::bit_cast<float>(corners[row * count]); };
-      const auto corner = [&](std::size_t row) {
-        return Vec3{number(row), number(row + 1), number(row + 2)};
-      };
-      return {corner(0), corner(3), corner(6)};
-    }
+    std::uint32_t primitive = no_primitive;
+    Leaf leaf = {};
+    std::uint32_t place = 0;  // in the leaf
+    bool inside = false;      // BlockTest
+    float least = std::numeric_limits<float>::infinity(),
+          greatest = 0;  // bounds of a certain one's t, scaled
   };
 
   void consider(const Candidate& candidate, bool certain) {
@@ -127,14 +142,18 @@ class ClosestHit : public Query {
       if (candidate.least > interval_.after) return;
     }
     settle();
-    probe_.decide();
-    take(decide(ray_.ray, candidate.triangle()), candidate.primitive);
+    decide_on(candidate);
   }
   void settle() {
     if (pending_.primitive == no_primitive) return;
+    decide_on(pending_);
+    pending_ = {};
+  }
+  void decide_on(const Candidate& candidate) {
     probe_.decide();
-    take(decide_inside(ray_.ray, pending_.triangle()), pending_.primitive);
-    pending_ = nothing;
+    const Triangle triangle = candidate.leaf.corners(candidate.place);
+    take(candidate.inside ? decide_inside(ray_.ray, triangle) : decide(ray_.ray, triangle),
+         candidate.primitive);
   }
   void take(float t, std::uint32_t primitive) {
     if (t == no_hit || !(Hit{t, primitive} < best_)) return;
@@ -143,8 +162,7 @@ class ClosestHit : public Query {
     interval_.after = std::min(interval_.after, scaled_up(ray_, t));
   }
 
-  static constexpr Candidate nothing{no_primitive, std::numeric_limits<float>::infinity(), 0, nullptr, 0};
-  Candidate pending_ = nothing;
+  Candidate pending_;
   Hit best_;
   float best_least_ = std::numeric_limits<float>::infinity();  // of best_.t, scaled
   Probe& probe_;
@@ -156,30 +174,23 @@ class AnyHit : public Query {
  public:
   AnyHit(const Scene& scene, const Ray& ray, Probe& probe) : Query(scene, ray), probe_(probe) {}
 
-  void visit(const BrickNode& leaf, const std::uint32_t* words) {
-    const std::uint32_t* const ids = words + 9 * leaf.triangles;
-    for (std::uint32_t first = 0; first < leaf.triangles; first += lanes) {
-      probe_.test_block();
-      if constexpr (!std::is_same_v<Probe, NoProbe>)
-        for (std::uint32_t i = first; i < std::min<std::uint32_t>(leaf.triangles, first + lanes); ++i)
-          probe_.test(ids[i]);
-      const BlockTest test = test_block(ray_, words, leaf.triangles, first, interval_);
-      if (!hn::AllFalse(Floats(), test.certain)) {
-        hit_ = true;
-        return;
-      }
-      for (std::uint64_t candidates = bits_of(test.candidates); candidates != 0;
+  void visit(const Leaf& leaf) {
+    for (std::uint32_t first = 0; first < leaf.triangles && !hit_; first += lanes) {
+      count_block(leaf, first, probe_);
+      const BlockTest test = test_block(ray_, leaf.words, leaf.triangles, first, interval_);
+      hit_ = !hn::AllFalse(Floats(), test.certain);
+      const std::uint64_t inside = bits_of(test.inside);
+      for (std::uint64_t candidates = bits_of(test.candidates); candidates != 0 && !hit_;
            candidates &= candidates - 1) {
-        probe_.decide();
         const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        if (decide(ray_.ray, scene_.triangle(ids[first + lane])) != no_hit) {
-          hit_ = true;
-          return;
-        }
+        probe_.decide();
+        const Triangle triangle = leaf.corners(first + lane);
+        hit_ =
+            (inside >> lane & 1u ? decide_inside(ray_.ray, triangle) : decide(ray_.ray, triangle)) != no_hit;
       }
     }
-    const std::uint32_t* const others = ids + leaf.triangles;
-    for (std::uint32_t i = 0; i < leaf.others && !hit_; ++i) hit_ = test_any(scene_, others[i], ray_, probe_);
+    for (std::uint32_t i = 0; i < leaf.others && !hit_; ++i)
+      hit_ = test_any(scene_, leaf.other(i), ray_, probe_);
   }
   bool done() const { return hit_; }
   bool answer() const { return hit_; }
@@ -208,7 +219,7 @@ HWY_NOINLINE void walk_bricks(const Bricks& bricks, std::uint32_t root, const Br
       if (cells != 0) stack[depth++] = {cells, index, query.tmax()};
     } else {
       probe.cell_step(false);
-      query.visit(node, bricks.words.data() + node.base);
+      query.visit({bricks.words.data() + node.base, node.triangles, node.others});
       if (query.done()) return;
     }
     // The next cell of the innermost brick that has one left; after a hit, only of those before it.

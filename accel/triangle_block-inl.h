@@ -41,6 +41,7 @@ struct FilterInterval {
 /// The answers of filter.h's test for a block of triangles, with its error bounds.
 struct BlockTest {
   hn::Mask<Floats> candidates;  ///< may be hit in the interval
+  hn::Mask<Floats> inside;      ///< the ray's line certainly passes inside: `decide_inside` will do
   hn::Mask<Floats> certain;     ///< of these, the ones that `decide` certainly accepts in the whole interval
   FloatVector height, height_error, det, det_error;  ///< t is height / det, det > 0
 
@@ -111,10 +112,10 @@ HWY_INLINE BlockTest test_block(const FilterRay& ray, const std::uint32_t* words
   const auto rejected = hn::And(bounded, hn::Or(outside, hn::And(steep, beyond)));
   const auto there = hn::FirstN(d, count - first);
   test.candidates = hn::AndNot(rejected, there);
-  test.certain =
-      hn::And(hn::And(hn::And(test.candidates, bounded), hn::And(inside, hn::Gt(least_det, test.det_error))),
-              hn::And(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.inside_from), greatest_det)),
-                      hn::Le(highest, hn::Mul(hn::Set(d, interval.inside_to), least_det))));
+  test.inside = hn::And(bounded, inside);
+  test.certain = hn::And(hn::And(hn::And(test.candidates, test.inside), hn::Gt(least_det, test.det_error)),
+                         hn::And(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.inside_from), greatest_det)),
+                                 hn::Le(highest, hn::Mul(hn::Set(d, interval.inside_to), least_det))));
   return test;
 }
 
