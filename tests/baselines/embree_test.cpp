@@ -39,6 +39,17 @@ double agreement(std::span<const Hit> a, std::span<const Hit> b) {
   return static_cast<double>(same) / static_cast<double>(a.size());
 }
 
+/// Of two coincident triangles (mixed_scene has such neighbours) the first: which of them Embree names
+/// depends on its tree.
+std::vector<Hit> first_of_coincident(const Scene& scene, std::vector<Hit> hits) {
+  const auto triangles = scene.triangles();
+  for (Hit& hit : hits)
+    if (hit.primitive > 0 && hit.primitive < triangles.size() &&
+        triangles[hit.primitive] == triangles[hit.primitive - 1])
+      --hit.primitive;
+  return hits;
+}
+
 double agreement(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
   std::size_t same = 0;
   for (std::size_t i = 0; i < a.size(); ++i) same += a[i] == b[i];
@@ -74,7 +85,7 @@ TEST(Embree, AgreesWithBruteForceInEveryForm) {
   for (const Scene& scene : {mixed_scene(1, 300, 60), terrain_scene(2, 14), mixed_scene(3, 300, 0)}) {
     const auto rays = random_rays(4, 1501);
     const auto truth = build("brute-force", scene);
-    const auto hits = closest(*truth, rays);
+    const auto hits = first_of_coincident(scene, closest(*truth, rays));
     const auto occluded = any(*truth, rays);
     for (const std::string& isa : isas())
       for (const std::string& query : queries())
@@ -83,7 +94,8 @@ TEST(Embree, AgreesWithBruteForceInEveryForm) {
             const auto spec =
                 fmt::format("embree:quality={}:robust={}:isa={}:query={}", quality, robust, isa, query);
             const auto structure = build(spec, scene);
-            EXPECT_GE(agreement(closest(*structure, rays), hits), 0.999) << spec << " of " << scene.name();
+            const auto answers = first_of_coincident(scene, closest(*structure, rays));
+            EXPECT_GE(agreement(answers, hits), 0.999) << spec << " of " << scene.name();
             EXPECT_GE(agreement(any(*structure, rays), occluded), 0.999) << spec << " of " << scene.name();
           }
   }
