@@ -196,18 +196,7 @@ class TreeBuilder {
         words[other++] = p;
         continue;
       }
-      const Triangle triangle = scene_.triangle(p);
-      std::size_t row = 0;
-      const auto put = [&](auto word) {
-        words[place + row++ * triangles + column] = std::bit_cast<std::uint32_t>(word);
-      };
-      for (const Vec3& v : {triangle.a, triangle.b, triangle.c}) {
-        put(v.x);
-        put(v.y);
-        put(v.z);
-      }
-      put(p);
-      ++column;
+      write_triangle(&words[place], triangles, column++, scene_.triangle(p), p);
     }
   }
 

@@ -22,24 +22,10 @@ HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
 namespace {
 
-/// `t` of the ray's direction as one of FilterRay's, moved by so much of itself that all roundings are paid
-/// for.
-HWY_INLINE float scaled_up(const FilterRay& ray, float t) {
-  const double scaled = std::max(t, FLT_MIN) * ray.scale * (1 + 0x1p-20);
-  return scaled < FLT_MAX ? static_cast<float>(scaled) : std::numeric_limits<float>::infinity();
-}
-HWY_INLINE float scaled_down(const FilterRay& ray, float t) {
-  return static_cast<float>(std::min(t * ray.scale * (1 - 0x1p-20), double(FLT_MAX)));
-}
-
 /// What both queries know of their ray.
 class Query {
  public:
-  Query(const Scene& scene, const Ray& ray)
-      : scene_(scene),
-        ray_(ray),
-        interval_{scaled_down(ray_, ray.tnear), scaled_up(ray_, ray.tfar), scaled_up(ray_, ray.tnear),
-                  scaled_down(ray_, std::min(ray.tfar, FLT_MAX))} {}
+  Query(const Scene& scene, const Ray& ray) : scene_(scene), ray_(ray), interval_(ray_) {}
 
   const FilterRay& ray() const { return ray_; }
   float tnear() const { return interval_.before; }

@@ -7,6 +7,7 @@
 #include "accel/cell_grid.h"
 #include "accel/memory_meter.h"
 #include "accel/walk_space.h"
+#include "scenes/geometry/primitives.h"
 
 namespace raymeter {
 
@@ -47,6 +48,15 @@ static_assert(sizeof(BrickNode) == 64);
 inline constexpr std::size_t triangle_rows = 10;
 /// The most floats that a kernel reads at once: so many words follow the last leaf.
 inline constexpr std::size_t widest_vector = 16;
+
+/// Writes triangle `column` of `count` into the rows that begin at `rows`.
+inline void write_triangle(std::uint32_t* rows, std::size_t count, std::size_t column,
+                           const Triangle& triangle, std::uint32_t primitive) {
+  rows += column;
+  for (const Vec3& corner : {triangle.a, triangle.b, triangle.c})
+    for (int axis = 0; axis < 3; ++axis, rows += count) *rows = std::bit_cast<std::uint32_t>(corner[axis]);
+  *rows = primitive;
+}
 
 /// A uniform grid whose occupied cells each hold a tree of bricks.
 struct Bricks {

@@ -7,6 +7,9 @@
 #define RAYMETER_TRIANGLE_BLOCK_INL
 #endif
 
+#include <algorithm>
+#include <limits>
+
 #include "accel/brick_ray-inl.h"
 
 #if HWY_TARGET != HWY_SCALAR
@@ -31,9 +34,25 @@ HWY_INLINE FloatVector norm_of(const FloatVec3& v) {
   return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
 }
 
+/// `t` of the ray's direction as one of FilterRay's, moved by so much of itself that all roundings are paid
+/// for.
+HWY_INLINE float scaled_up(const FilterRay& ray, float t) {
+  const double scaled = std::max(t, FLT_MIN) * ray.scale * (1 + 0x1p-20);
+  return scaled < FLT_MAX ? static_cast<float>(scaled) : std::numeric_limits<float>::infinity();
+}
+HWY_INLINE float scaled_down(const FilterRay& ray, float t) {
+  return static_cast<float>(std::min(t * ray.scale * (1 - 0x1p-20), double(FLT_MAX)));
+}
+
 /// The interval in which hits matter, in FilterRay's scaled t: floats that are certainly outside it, and such
-/// as are certainly inside.
+/// as are certainly inside. For rays that BrickRay takes.
 struct FilterInterval {
+  explicit HWY_INLINE FilterInterval(const FilterRay& ray)
+      : before(scaled_down(ray, ray.ray.tnear)),
+        after(scaled_up(ray, ray.ray.tfar)),
+        inside_from(scaled_up(ray, ray.ray.tnear)),
+        inside_to(scaled_down(ray, std::min(ray.ray.tfar, FLT_MAX))) {}
+
   float before, after;  ///< nothing at or below `before`, or above `after`, matters
   float inside_from, inside_to;
 };
