@@ -29,18 +29,18 @@ double cost_of_leaf(std::size_t primitives, double chance) {
   return node_cost + chance * (leaf_cost + block_cost * std::ceil(double(primitives) / block_size));
 }
 
-using Corner = std::array<float, 3>;
+using Corner = std::array<double, 3>;
 struct Box {
   Corner low, high;
 };
 
 class TreeBuilder {
  public:
-  TreeBuilder(const Scene& scene, double margin, const BrickOptions& options, MemoryMeter& meter)
+  TreeBuilder(const Scene& scene, const Bricks& bricks, const BrickOptions& options, MemoryMeter& meter)
       : nodes(MeteredAllocator<BrickNode>(meter)),
         words(MeteredAllocator<std::uint32_t>(meter)),
         scene_(scene),
-        margin_(margin),
+        margin_(bricks.margin),
         options_(options),
         stack_(MeteredAllocator<std::uint32_t>(meter)),
         masks_(MeteredAllocator<std::uint64_t>(meter)) {}
@@ -68,16 +68,13 @@ class TreeBuilder {
     const Box box = tight_box(std::span(stack_).subspan(first), cell);
     BrickNode node;
     std::array<int, 3> layers{4, 4, 4};
-    float longest = 0;
+    double longest = 0;
     for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.high[a] - box.low[a]);
     for (std::size_t a = 0; a < 3; ++a) {
-      const float extent = box.high[a] - box.low[a];
+      const double extent = box.high[a] - box.low[a];
       if (!(extent > longest / 64)) layers[a] = 1;
-      node.low[a] = box.low[a];
-      node.size[a] = extent / static_cast<float>(layers[a]);
-      while (node.plane(static_cast<int>(a), layers[a]) < box.high[a])
-        node.size[a] =
-            std::max(std::nextafter(node.size[a], std::numeric_limits<float>::infinity()), FLT_MIN);
+      node.low[a] = float_below(box.low[a]);
+      node.size[a] = -float_below(-(box.high[a] - double(node.low[a])) / layers[a]);
     }
 
     // Which cells each primitive meets.
@@ -115,26 +112,21 @@ class TreeBuilder {
     stack_.resize(first);
   }
 
-  /// Grown by the margin, and never by nothing: see BrickRay.
+  /// Grown by a margin: see BrickRay.
   Box tight_box(std::span<const std::uint32_t> primitives, const Box& cell) const {
-    Bounds bounds;
+    Box box{cell.high, cell.low};
     for (const std::uint32_t p : primitives) {
-      Bounds part = scene_.bounds_of(p);
+      const Bounds bounds = scene_.bounds_of(p);
       for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        part.low[axis] = std::clamp(part.low[axis], cell.low[a], cell.high[a]);
-        part.high[axis] = std::clamp(part.high[axis], cell.low[a], cell.high[a]);
+        box.low[a] = std::min(box.low[a], std::clamp<double>(bounds.low[axis], cell.low[a], cell.high[a]));
+        box.high[a] = std::max(box.high[a], std::clamp<double>(bounds.high[axis], cell.low[a], cell.high[a]));
       }
-      bounds.extend(part);
     }
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    Box box;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      box.low[a] =
-          std::min(float_below(bounds.low[axis] - margin_), std::nextafter(bounds.low[axis], -infinity));
-      box.high[a] =
-          std::max(-float_below(-bounds.high[axis] - margin_), std::nextafter(bounds.high[axis], infinity));
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double margin = margin_ + 0x1p-20 * (box.high[a] - box.low[a]);
+      box.low[a] -= margin;
+      box.high[a] += margin;
     }
     return box;
   }
@@ -175,28 +167,30 @@ class TreeBuilder {
   /// Whether floats can tell its planes apart.
   static bool can_be_split(const BrickNode& node, const std::array<int, 3>& layers) {
     for (std::size_t a = 0; a < 3; ++a)
-      if (layers[a] > 1 && !(node.size[a] > 0x1p-18f * std::abs(node.plane(static_cast<int>(a), 2))))
+      if (layers[a] > 1 && !(node.size[a] > 0x1p-18 * std::abs(node.plane(static_cast<int>(a), 2))))
         return false;
     return true;
   }
 
   void make_leaf(BrickNode& leaf, std::span<const std::uint32_t> primitives) {
     const std::size_t place = words.size();
-    if (place + (triangle_rows + 1) * primitives.size() > std::numeric_limits<std::uint32_t>::max())
+    if (place + (TriangleRows::rows + 1) * primitives.size() > std::numeric_limits<std::uint32_t>::max())
       throw Error("brick-grid: more than 16 GiB of leaves");
     const auto triangles = static_cast<std::size_t>(
         std::ranges::count_if(primitives, [&](std::uint32_t p) { return scene_.is_triangle(p); }));
-    words.resize(place + triangle_rows * triangles + (primitives.size() - triangles));
+    words.resize(place + TriangleRows::rows * triangles + (primitives.size() - triangles));
     leaf.base = static_cast<std::uint32_t>(place);
     leaf.triangles = static_cast<std::uint32_t>(triangles);
     leaf.others = static_cast<std::uint32_t>(primitives.size() - triangles);
-    std::size_t column = 0, other = place + triangle_rows * triangles;
+    std::uint32_t column = 0;
+    std::size_t other = place + TriangleRows::rows * triangles;
     for (const std::uint32_t p : primitives) {
       if (!scene_.is_triangle(p)) {
         words[other++] = p;
         continue;
       }
-      write_triangle(&words[place], triangles, column++, scene_.triangle(p), p);
+      TriangleRows::put(&words[place], leaf.triangles, column, scene_.triangle(p), p);
+      ++column;
     }
   }
 
@@ -212,11 +206,6 @@ class TreeBuilder {
 void build_bricks(const Scene& scene, const CellLists& lists, const BrickOptions& options, MemoryMeter& meter,
                   Bricks& bricks) {
   bricks.roots.assign(lists.cells(), Bricks::empty_cell);
-  double magnitude = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    magnitude = std::max({magnitude, std::abs(bricks.space.low[axis]), std::abs(bricks.space.high[axis])});
-  const double margin = std::max(magnitude * 0x1p-40, 0x1p-100);
-
   // Pieces of the grid with about as many references each, whatever the number of threads.
   constexpr std::uint64_t piece_size = 4096;
   std::vector<std::uint64_t> begins{0};
@@ -231,19 +220,19 @@ void build_bricks(const Scene& scene, const CellLists& lists, const BrickOptions
   const std::size_t pieces = begins.size() - 1;
 
   std::vector<TreeBuilder> built;
-  for (std::size_t i = 0; i < pieces; ++i) built.emplace_back(scene, margin, options, meter);
+  for (std::size_t i = 0; i < pieces; ++i) built.emplace_back(scene, bricks, options, meter);
   for_ranges(pieces, 1, [&](std::uint64_t begin, std::uint64_t end) {
     for (std::uint64_t piece = begin; piece < end; ++piece)
       for (std::uint64_t cell = begins[piece]; cell < begins[piece + 1]; ++cell) {
         if (lists[cell].empty()) continue;
         bricks.roots[cell] = static_cast<std::uint32_t>(built[piece].nodes.size());
-        const auto& n = bricks.grid.n;
+        const auto& n = bricks.cells.n;
         const std::array<std::uint64_t, 3> at{cell % n[0], cell / n[0] % n[1], cell / n[0] / n[1]};
         Box box;
         for (int axis = 0; axis < 3; ++axis) {
           const auto a = static_cast<std::size_t>(axis);
-          box.low[a] = float_below(bricks.grid.plane(axis, double(at[a])) - bricks.space.margin);
-          box.high[a] = -float_below(-bricks.grid.plane(axis, double(at[a]) + 1) - bricks.space.margin);
+          box.low[a] = bricks.cells.plane(axis, double(at[a])) - bricks.space.margin;
+          box.high[a] = bricks.cells.plane(axis, double(at[a]) + 1) + bricks.space.margin;
         }
         built[piece].add_tree(lists[cell], box);
       }

@@ -7,6 +7,7 @@
 #include "accel/cell_lists.h"
 #include "accel/cell_overlap.h"
 #include "scenes/base/error.h"
+#include "scenes/geometry/rounding.h"
 
 namespace raymeter {
 namespace {
@@ -16,7 +17,10 @@ class BrickGrid final : public Structure {
   BrickGrid(const BuildInput& input, const ResolutionRule& top, std::uint32_t leaf,
             const BrickKernels& kernels)
       : scene_(input.scene), kernels_(kernels), meter_(input.memory_limit), bricks_(meter_) {
-    bricks_.space = walk_space_of(scene_);
+    const Bounds box = scene_.bounds();
+    bricks_.space = WalkSpace(box.empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : box, 0x1p-17);
+    for (int axis = 0; axis < 3; ++axis) bricks_.space.low[axis] = float_below(bricks_.space.low[axis]);
+    bricks_.margin = std::max(bricks_.space.margin * 0x1p-17, 0x1p-100);
     for (int axis = 0; axis < 3; ++axis)
       if (std::max(-bricks_.space.low[axis], bricks_.space.high[axis]) > 0x1p126)
         throw Error("brick-grid: coordinates beyond 8.5e+37 would leave the range of floats");
@@ -24,11 +28,12 @@ class BrickGrid final : public Structure {
                                     ResolutionLimits::within(input.memory_limit, 4 * bricks_.space.margin));
     // Coarser than other grids where primitives are large: a reference here is 40 bytes and no number.
     const auto limit = std::max<std::uint64_t>(std::uint64_t{1} << 22, 8 * scene_.primitive_count());
-    bricks_.grid = registrable_grid(scene_, bricks_.space, limit, chosen);
+    bricks_.cells = registrable_grid(scene_, bricks_.space, limit, chosen);
+    bricks_.grid = FloatGrid(bricks_.cells);
     {
       CellLists lists(meter_);
       lists.build(cell_count(chosen.n), scene_.primitive_count(), [&](std::uint32_t p, const auto& add) {
-        for_each_cell_of(scene_, p, bricks_.grid, bricks_.space.margin, Fit::exact, add);
+        for_each_cell_of(scene_, p, bricks_.cells, bricks_.space.margin, Fit::exact, add);
       });
       build_bricks(scene_, lists, {leaf, kernels.sums_within}, meter_, bricks_);
     }

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "accel/brick_ray-inl.h"
+#include "accel/brick_walk-inl.h"
 #include "accel/grid_walk.h"
 #include "accel/primitive_test.h"
 #include "accel/triangle_block-inl.h"
@@ -22,249 +23,319 @@ HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
 namespace {
 
-/// What both queries know of their ray.
-class Query {
- public:
-  Query(const Scene& scene, const Ray& ray) : scene_(scene), ray_(ray), interval_(ray_) {}
-
-  const FilterRay& ray() const { return ray_; }
-  float tnear() const { return interval_.before; }
-  /// Cells entered later than this don't matter.
-  float tmax() const { return interval_.after; }
-  /// The same for a walk.
-  double last() const { return interval_.after / ray_.scale; }
-
- protected:
-  const Scene& scene_;
-  FilterRay ray_;
-  FilterInterval interval_;
-};
-
-/// A leaf's words (bricks.h).
+/// A leaf, and how far from the ray's origin some point of each of its primitives may be (1-norm).
 struct Leaf {
-  const std::uint32_t* words = nullptr;
-  std::uint32_t triangles = 0, others = 0;
-
-  std::uint32_t triangle(std::uint32_t i) const { return words[9 * triangles + i]; }
-  std::uint32_t other(std::uint32_t i) const { return words[10 * triangles + i]; }
-  Triangle corners(std::uint32_t i) const {
-    const auto number = [&](std::uint32_t row) { return std::bit_cast<float>(words[row * triangles + i]); };
-    const auto corner = [&](std::uint32_t row) {
-      return Vec3{number(row), number(row + 1), number(row + 2)};
-    };
-    return {corner(0), corner(3), corner(6)};
-  }
+  TriangleRows triangles;
+  std::span<const std::uint32_t> others;
+  float reach = 0;
 };
 
-template <class Probe>
-HWY_INLINE void count_block(const Leaf& leaf, std::uint32_t first, Probe& probe) {
-  probe.test_block();
-  if constexpr (!std::is_same_v<Probe, NoProbe>)
-    for (std::uint32_t i = first; i < std::min<std::uint32_t>(leaf.triangles, first + lanes); ++i)
-      probe.test(leaf.triangle(i));
+HWY_INLINE Leaf leaf_of(const Bricks& bricks, const BrickNode& node, float reach) {
+  const std::uint32_t* const words = bricks.words.data() + node.base;
+  return {{words, node.triangles}, {words + TriangleRows::rows * node.triangles, node.others}, reach};
 }
 
-/// The closest hit. The primitive that is certainly hit, and certainly before all others so far, is decided
-/// in the end: how near it is, is known well enough to end the walk.
 template <class Probe>
-class ClosestHit : public Query {
- public:
-  ClosestHit(const Scene& scene, const Ray& ray, Probe& probe) : Query(scene, ray), probe_(probe) {}
+HWY_INLINE void count_block(const TriangleRows& triangles, std::uint32_t first, Probe& probe) {
+  probe.test_block();
+  if constexpr (!std::is_same_v<Probe, NoProbe>)
+    for (std::uint32_t i = first; i < std::min<std::uint32_t>(triangles.count, first + lanes); ++i)
+      probe.test(triangles.primitive(i));
+}
 
-  void visit(const Leaf& leaf) {
-    for (std::uint32_t first = 0; first < leaf.triangles; first += lanes) {
-      count_block(leaf, first, probe_);
-      const BlockTest test = test_block(ray_, leaf.words, leaf.triangles, first, interval_);
-      std::uint64_t candidates = bits_of(test.candidates);
-      if (candidates == 0) continue;
-      const std::uint64_t certain = bits_of(test.certain), inside = bits_of(test.inside);
-      alignas(64) float least[lanes], greatest[lanes];
-      hn::Store(test.least_t(), Floats(), least);
-      hn::Store(test.greatest_t(), Floats(), greatest);
+/// The closest hit.
+template <class Probe>
+class ClosestHit {
+ public:
+  HWY_INLINE ClosestHit(const Scene& scene, const BrickRay& ray, Probe& probe)
+      : scene_(scene), ray_(ray), probe_(probe), interval_(ray) {}
+
+  /// What lies beyond doesn't matter.
+  float tmax() const { return interval_.after; }
+
+  HWY_INLINE void visit(const Leaf& leaf) {
+    for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
+      count_block(leaf.triangles, first, probe_);
+      const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
+      if (test.candidates == 0) continue;
+      std::uint64_t candidates = test.within(interval_).possible;
       for (; candidates != 0; candidates &= candidates - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        const Candidate candidate{leaf.triangle(first + lane), leaf,        first + lane,
-                                  (inside >> lane & 1u) != 0,  least[lane], greatest[lane]};
-        consider(candidate, (certain >> lane & 1u) != 0);
+        const std::uint32_t primitive = leaf.triangles.primitive(first + lane);
+        if (primitive != best_.primitive)
+          consider(primitive, leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach);
       }
     }
-    for (std::uint32_t i = 0; i < leaf.others; ++i) {
-      const std::uint32_t primitive = leaf.other(i);
-      probe_.test(primitive);
-      if (primitive == best_.primitive) continue;
-      const float tmax = std::min(best_.t, ray_.ray.tfar);
-      const float t = scene_.visit(primitive, [&](const auto& shape) {
-        if (!may_hit(ray_, shape, tmax)) return no_hit;
-        probe_.decide();
-        return decide(ray_.ray, shape);
-      });
-      take(t, primitive);
-    }
+    if (!leaf.others.empty()) visit_others(leaf.others);
   }
   static constexpr bool done() { return false; }
-  Hit answer() {
-    settle();
-    return best_;
-  }
+  Hit answer() const { return best_; }
 
  private:
-  struct Candidate {
-    std::uint32_t primitive = no_primitive;
-    Leaf leaf = {};
-    std::uint32_t place = 0;  // in the leaf
-    bool inside = false;      // BlockTest
-    float least = std::numeric_limits<float>::infinity(),
-          greatest = 0;  // bounds of a certain one's t, scaled
-  };
-
-  void consider(const Candidate& candidate, bool certain) {
-    if (candidate.primitive == pending_.primitive || candidate.primitive == best_.primitive) return;
-    if (certain) {
-      if (candidate.greatest < pending_.least && candidate.greatest < best_least_) {
-        pending_ = candidate;
-        interval_.after = candidate.greatest;
-        return;
+  HWY_INLINE void consider(std::uint32_t primitive, const TriangleRows& triangles, std::uint32_t column,
+                           bool inside, float reach) {
+    const Triangle triangle = triangles.triangle(column);
+    const PlaneHit plane(ray_, triangle, triangles.edge(column), reach);
+    const Ray& ray = *ray_.ray;
+    if (plane.known()) {
+      const double inverse = 1 / plane.det, t = plane.height * inverse;
+      const double error =
+          1.01 * (plane.height_error + std::abs(t) * plane.det_error) * inverse + 0x1p-50 * std::abs(t);
+      const float low = rounded(t - error), high = rounded(t + error);
+      if (low > std::min(best_.t, ray.tfar) || high <= ray.tnear) return;
+      if (low == high && inside) {
+        probe_.decide();
+        return take(within(ray, low), primitive);
       }
-      if (candidate.least > interval_.after) return;
     }
-    settle();
-    decide_on(candidate);
-  }
-  void settle() {
-    if (pending_.primitive == no_primitive) return;
-    decide_on(pending_);
-    pending_ = {};
-  }
-  void decide_on(const Candidate& candidate) {
     probe_.decide();
-    const Triangle triangle = candidate.leaf.corners(candidate.place);
-    take(candidate.inside ? decide_inside(ray_.ray, triangle) : decide(ray_.ray, triangle),
-         candidate.primitive);
+    take(decide(ray, triangle), primitive);
   }
-  void take(float t, std::uint32_t primitive) {
+  HWY_INLINE void take(float t, std::uint32_t primitive) {
     if (t == no_hit || !(Hit{t, primitive} < best_)) return;
     best_ = {t, primitive};
-    best_least_ = scaled_down(ray_, t);
-    interval_.after = std::min(interval_.after, scaled_up(ray_, t));
+    interval_.after = ray_.scaled_up(t);
+  }
+  HWY_NOINLINE void visit_others(std::span<const std::uint32_t> others) {
+    const FilterRay filter(*ray_.ray);
+    for (const std::uint32_t primitive : others) test_closest(scene_, primitive, filter, best_, probe_);
+    if (best_.found()) interval_.after = ray_.scaled_up(best_.t);
   }
 
-  Candidate pending_;
-  Hit best_;
-  float best_least_ = std::numeric_limits<float>::infinity();  // of best_.t, scaled
+  const Scene& scene_;
+  const BrickRay& ray_;
   Probe& probe_;
+  FilterInterval interval_;
+  Hit best_;
 };
 
 /// Whether there is any hit.
 template <class Probe>
-class AnyHit : public Query {
+class AnyHit {
  public:
-  AnyHit(const Scene& scene, const Ray& ray, Probe& probe) : Query(scene, ray), probe_(probe) {}
+  HWY_INLINE AnyHit(const Scene& scene, const BrickRay& ray, Probe& probe)
+      : scene_(scene), ray_(ray), probe_(probe), interval_(ray) {}
 
-  void visit(const Leaf& leaf) {
-    for (std::uint32_t first = 0; first < leaf.triangles && !hit_; first += lanes) {
-      count_block(leaf, first, probe_);
-      const BlockTest test = test_block(ray_, leaf.words, leaf.triangles, first, interval_);
-      hit_ = !hn::AllFalse(Floats(), test.certain);
-      const std::uint64_t inside = bits_of(test.inside);
-      for (std::uint64_t candidates = bits_of(test.candidates); candidates != 0 && !hit_;
-           candidates &= candidates - 1) {
+  float tmax() const { return interval_.after; }
+
+  HWY_INLINE void visit(const Leaf& leaf) {
+    for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
+      count_block(leaf.triangles, first, probe_);
+      const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
+      if (test.candidates == 0) continue;
+      const auto [possible, certain] = test.within(interval_);
+      if (certain != 0) return found();
+      for (std::uint64_t candidates = possible; candidates != 0; candidates &= candidates - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        probe_.decide();
-        const Triangle triangle = leaf.corners(first + lane);
-        hit_ =
-            (inside >> lane & 1u ? decide_inside(ray_.ray, triangle) : decide(ray_.ray, triangle)) != no_hit;
+        if (hits(leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach)) return found();
       }
     }
-    for (std::uint32_t i = 0; i < leaf.others && !hit_; ++i)
-      hit_ = test_any(scene_, leaf.other(i), ray_, probe_);
+    if (!leaf.others.empty()) visit_others(leaf.others);
   }
   bool done() const { return hit_; }
-  bool answer() const { return hit_; }
+  std::uint8_t answer() const { return hit_; }
 
  private:
-  bool hit_ = false;
+  /// Nothing else matters.
+  HWY_INLINE void found() {
+    hit_ = true;
+    interval_.after = -std::numeric_limits<float>::infinity();
+  }
+  HWY_INLINE bool hits(const TriangleRows& triangles, std::uint32_t column, bool inside, float reach) {
+    probe_.decide();
+    const Triangle triangle = triangles.triangle(column);
+    const PlaneHit plane(ray_, triangle, triangles.edge(column), reach);
+    const Ray& ray = *ray_.ray;
+    if (plane.known()) {
+      // Room for the rounding of t to a float.
+      constexpr double more = 1 + 0x1p-22, less = 1 - 0x1p-22;
+      const double low = plane.height - plane.height_error, high = plane.height + plane.height_error;
+      const double least_det = plane.det - plane.det_error, greatest_det = plane.det + plane.det_error;
+      const double tnear = ray.tnear, tfar = ray.tfar;
+      if (high < tnear * less * least_det || low > std::max(tfar, double(FLT_MIN)) * more * greatest_det)
+        return false;
+      if (inside && low > std::max(tnear, double(FLT_MIN)) * more * greatest_det &&
+          high < std::min(tfar, double(FLT_MAX)) * less * least_det)
+        return true;
+    }
+    return decide(ray, triangle) != no_hit;
+  }
+  HWY_NOINLINE void visit_others(std::span<const std::uint32_t> others) {
+    const FilterRay filter(*ray_.ray);
+    for (std::size_t i = 0; i < others.size() && !hit_; ++i)
+      hit_ = test_any(scene_, others[i], filter, probe_);
+    if (hit_) found();
+  }
+
+  const Scene& scene_;
+  const BrickRay& ray_;
   Probe& probe_;
+  FilterInterval interval_;
+  bool hit_ = false;
 };
 
 /// Visits the leaves below a root that the ray meets, front to back.
-template <class Query, class Probe>
-HWY_NOINLINE void walk_bricks(const Bricks& bricks, std::uint32_t root, const BrickRay& ray, Query& query,
-                              Probe& probe) {
-  struct Level {
-    std::uint64_t rest;  // cells still to be visited, as BrickRay::pierced gives them
-    std::uint32_t node;
-    float tmax;  // for which that was found
-  };
-  Level stack[deepest_brick + 1];
-  std::uint32_t depth = 0, index = root;
-  while (true) {
-    const BrickNode& node = bricks.nodes[index];
-    const std::uint64_t cells = ray.pierced(node, query.tnear(), query.tmax());
-    if (cells == 0 || !node.is_leaf()) {
-      probe.inner_step();
-      if (cells != 0) stack[depth++] = {cells, index, query.tmax()};
-    } else {
+class TreeWalk {
+ public:
+  /// `reach`: as of BrickWalk.
+  HWY_INLINE void begin(const BrickNode* root, float reach) {
+    depth_ = 0;
+    reach_ = reach;
+    node_ = root;
+    __builtin_prefetch(node_);
+  }
+  /// One node; false when there is no further one.
+  template <class Query, class Probe>
+  HWY_INLINE bool step(const Bricks& bricks, const BrickRay& ray, float tnear, Query& query, Probe& probe) {
+    const BrickNode& node = *node_;
+    const std::uint64_t cells = ray.pierced(node, tnear, query.tmax());
+    if (cells != 0 && node.is_leaf()) {
       probe.cell_step(false);
-      query.visit({bricks.words.data() + node.base, node.triangles, node.others});
-      if (query.done()) return;
+      query.visit(leaf_of(bricks, node, reach_));
+      if (query.done()) return false;
+    } else {
+      probe.inner_step();
+      if (cells != 0) stack_[depth_++] = {cells, &node, query.tmax()};
     }
     // The next cell of the innermost brick that has one left; after a hit, only of those before it.
     while (true) {
-      if (depth == 0) return;
-      Level& level = stack[depth - 1];
+      if (depth_ == 0) return false;
+      Level& level = stack_[depth_ - 1];
       if (level.rest != 0 && level.tmax != query.tmax()) {
         level.tmax = query.tmax();
-        level.rest &= ray.pierced(bricks.nodes[level.node], query.tnear(), level.tmax);
+        level.rest &= ray.pierced(*level.node, tnear, level.tmax);
       }
       if (level.rest != 0) break;
-      --depth;
+      --depth_;
     }
-    Level& level = stack[depth - 1];
-    const auto cell = static_cast<unsigned>(std::countr_zero(level.rest)) ^ ray.mirror();
+    Level& level = stack_[depth_ - 1];
+    const auto cell = static_cast<unsigned>(std::countr_zero(level.rest)) ^ mirror_of[ray.octant];
     level.rest &= level.rest - 1;
-    index = bricks.nodes[level.node].child(cell);
+    node_ = &bricks.nodes[level.node->child(cell)];
+    __builtin_prefetch(node_);
+    return true;
   }
-}
 
+ private:
+  struct Level {
+    std::uint64_t rest;  // cells still to be visited, as BrickRay::pierced gives them
+    const BrickNode* node;
+    float tmax;  // for which that was found
+  };
+  const BrickNode* node_;
+  float reach_;
+  std::uint32_t depth_;
+  Level stack_[deepest_brick + 1];
+};
+
+/// A query of a ray, asked by the same ray with its origin moved along.
+template <class Query>
+class MovedQuery {
+ public:
+  /// `moved` begins where `ray` is at t = `by` of its given direction.
+  MovedQuery(Query& query, const BrickRay& ray, double by)
+      : query_(query), by_(by * ray.scale), moved_(2 * (1 + 0x1p-20f) * static_cast<float>(by_)) {}
+  float tmax() const { return -float_below(by_ - double(query_.tmax())) * (1 + 0x1p-20f); }
+  void visit(const Leaf& leaf) { query_.visit({leaf.triangles, leaf.others, leaf.reach + moved_}); }
+  bool done() const { return query_.done(); }
+
+ private:
+  Query& query_;
+  double by_;    // in scaled t
+  float moved_;  // the 1-norm
+};
+
+/// For a ray that BrickWalk is not proved for: from where it enters the scene, if that is all, else without a
+/// walk.
 template <class Query, class Answer, class Probe>
-HWY_INLINE Answer answer(const Bricks& bricks, const Scene& scene, const Ray& ray, Probe& probe) {
+HWY_NOINLINE Answer answer_special(const Bricks& bricks, const Scene& scene, const Ray& ray, Probe& probe) {
   if (!is_traceable(ray)) return {};
   const WalkRay walk(ray);
-  Query query(scene, ray, probe);
-  if (!BrickRay::takes(query.ray()) || too_far(walk, bricks.space)) {
-    if constexpr (std::is_same_v<Answer, Hit>)
-      return closest_of_all(scene, ray, probe);
-    else
-      return any_of_all(scene, ray, probe);
-  }
-  const WalkInterval interval = clip(walk, ray, bricks.space.low, bricks.space.high);
-  if (interval.empty()) return {};
-  const BrickRay brick_ray(query.ray());
-  walk_cells(bricks.grid, walk, interval, [&](std::uint64_t cell, double, double) {
-    const std::uint32_t root = bricks.roots[cell];
-    if (root == Bricks::empty_cell) {
-      probe.cell_step(true);
-    } else {
-      walk_bricks(bricks, root, brick_ray, query, probe);
-      if (query.done()) return -std::numeric_limits<double>::infinity();
+  if (!too_far(walk, bricks.space)) {
+    const WalkInterval interval = clip(walk, ray, bricks.space.low, bricks.space.high);
+    if (interval.empty()) return {};
+    Ray moved = ray;
+    moved.origin = to_float(walk.origin + interval.enter * walk.direction);
+    if (moved.tnear > 0) moved.tnear = 0;
+    moved.tfar = std::numeric_limits<float>::infinity();
+    BrickWalk bricks_walk(bricks, {&moved, 1});
+    if (bricks_walk.taken() != 0) {
+      BrickRay unmoved = bricks_walk.ray(0);
+      unmoved.ray = &ray;
+      Query query(scene, unmoved, probe);
+      MovedQuery<Query> moved_query(query, unmoved, interval.enter);
+      alignas(64) std::array<float, lanes> tmax{};
+      while (bricks_walk.find_roots(probe) != 0) {
+        TreeWalk tree;
+        tree.begin(&bricks.nodes[bricks_walk.root(0)], bricks_walk.reach(0));
+        while (tree.step(bricks, bricks_walk.ray(0), bricks_walk.tnear(0), moved_query, probe)) {
+        }
+        tmax[0] = moved_query.tmax();
+        bricks_walk.leave_roots(tmax);
+      }
+      return query.answer();
     }
-    return query.last();
-  });
-  return query.answer();
+  }
+  if constexpr (std::is_same_v<Answer, Hit>)
+    return closest_of_all(scene, ray, probe);
+  else
+    return any_of_all(scene, ray, probe);
+}
+
+/// Answers as many rays as there are lanes, or fewer. A probe counts them as if they were one.
+template <class Query, class Answer, class Probe>
+HWY_INLINE void answer_all(const Bricks& bricks, const Scene& scene, std::span<const Ray> rays,
+                           std::span<Answer> answers, Probe& probe) {
+  BrickWalk walk(bricks, rays);
+  alignas(Query) std::array<std::byte, sizeof(Query) * lanes> storage;
+  Query* const queries = reinterpret_cast<Query*>(storage.data());
+  for (std::size_t i = 0; i < rays.size(); ++i) new (&queries[i]) Query(scene, walk.ray(i), probe);
+  alignas(64) std::array<float, lanes> tmax{};
+  std::array<TreeWalk, lanes> trees;
+  while (true) {
+    const std::uint64_t rest = walk.find_roots(probe);
+    if (rest == 0) break;
+    for (std::uint64_t r = rest; r != 0; r &= r - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(r));
+      trees[lane].begin(&bricks.nodes[walk.root(lane)], walk.reach(lane));
+    }
+    for (std::uint64_t active = rest; active != 0;) {
+      for (std::uint64_t r = active; r != 0; r &= r - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(r));
+        if (!trees[lane].step(bricks, walk.ray(lane), walk.tnear(lane), queries[lane], probe))
+          active &= ~(std::uint64_t{1} << lane);
+      }
+    }
+    for (std::uint64_t r = rest; r != 0; r &= r - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(r));
+      tmax[lane] = queries[lane].tmax();
+    }
+    walk.leave_roots(tmax);
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = queries[i].answer();
+  const std::uint64_t all = ~std::uint64_t{0} >> (64 - rays.size());
+  for (std::uint64_t rest = all & ~walk.taken(); rest != 0; rest &= rest - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+    answers[lane] = answer_special<Query, Answer>(bricks, scene, rays[lane], probe);
+  }
 }
 
 void trace_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, std::span<Hit> hits) {
   const FlushDenormals mode;
   NoProbe probe;
-  for (std::size_t i = 0; i < batch.rays.size(); ++i)
-    hits[i] = answer<ClosestHit<NoProbe>, Hit>(bricks, scene, batch.rays[i], probe);
+  for (std::size_t i = 0; i < batch.rays.size(); i += lanes) {
+    const std::size_t n = std::min(lanes, batch.rays.size() - i);
+    answer_all<ClosestHit<NoProbe>>(bricks, scene, batch.rays.subspan(i, n), hits.subspan(i, n), probe);
+  }
 }
 void trace_any(const Bricks& bricks, const Scene& scene, const BatchView& batch,
                std::span<std::uint8_t> occluded) {
   const FlushDenormals mode;
   NoProbe probe;
-  for (std::size_t i = 0; i < batch.rays.size(); ++i)
-    occluded[i] = answer<AnyHit<NoProbe>, bool>(bricks, scene, batch.rays[i], probe);
+  for (std::size_t i = 0; i < batch.rays.size(); i += lanes) {
+    const std::size_t n = std::min(lanes, batch.rays.size() - i);
+    answer_all<AnyHit<NoProbe>>(bricks, scene, batch.rays.subspan(i, n), occluded.subspan(i, n), probe);
+  }
 }
 void count_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, std::span<Hit> hits,
                    std::span<RayCounters> counters) {
@@ -272,7 +343,7 @@ void count_closest(const Bricks& bricks, const Scene& scene, const BatchView& ba
   CountingProbe probe(scene.primitive_count());
   for (std::size_t i = 0; i < batch.rays.size(); ++i) {
     probe.begin_ray(counters[i]);
-    hits[i] = answer<ClosestHit<CountingProbe>, Hit>(bricks, scene, batch.rays[i], probe);
+    answer_all<ClosestHit<CountingProbe>>(bricks, scene, batch.rays.subspan(i, 1), hits.subspan(i, 1), probe);
   }
 }
 void count_any(const Bricks& bricks, const Scene& scene, const BatchView& batch,
@@ -281,7 +352,7 @@ void count_any(const Bricks& bricks, const Scene& scene, const BatchView& batch,
   CountingProbe probe(scene.primitive_count());
   for (std::size_t i = 0; i < batch.rays.size(); ++i) {
     probe.begin_ray(counters[i]);
-    occluded[i] = answer<AnyHit<CountingProbe>, bool>(bricks, scene, batch.rays[i], probe);
+    answer_all<AnyHit<CountingProbe>>(bricks, scene, batch.rays.subspan(i, 1), occluded.subspan(i, 1), probe);
   }
 }
 

@@ -67,8 +67,8 @@ BrickOverlap::BrickOverlap(const BrickNode& brick, const std::array<int, 3>& lay
     const double low = plane_[a][0], high = plane_[a][static_cast<std::size_t>(layers[a])];
     centre_[axis] = 0.5 * (low + high);
     half_[axis] = 0.5 * brick.size[a];
-    // A plane is off from its place by a rounding of its coordinate and one of its offset.
-    margin_ = std::max(margin_, 0x1p-23 * (std::abs(low) + std::abs(high)) + 0x1p-22 * (high - low));
+    // See BrickRay.
+    margin_ = std::max(margin_, 0x1p-20 * (high - low));
     for (int i = 0; i < 4; ++i)
       middle_[a][static_cast<std::size_t>(i)] = low + (i + 0.5) * double(brick.size[a]) - centre_[axis];
   }

@@ -8,14 +8,16 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "accel/bricks.h"
-#include "scenes/geometry/filter.h"
+#include "scenes/geometry/ray.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
@@ -24,7 +26,9 @@ namespace raymeter::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, widest_vector>;
 using FloatVector = hn::Vec<Floats>;
-using Bytes = hn::Repartition<std::uint8_t, Floats>;
+using Integers = hn::RebindToSigned<Floats>;
+using IntegerVector = hn::Vec<Integers>;
+using Floats4 = hn::Full128<float>;
 inline constexpr std::size_t lanes = hn::MaxLanes(Floats());
 
 HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
@@ -33,19 +37,30 @@ HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
   return bits;
 }
 
-/// Where the five planes on each axis lie in sixteen lanes: those of x and those of y together within a
-/// vector of eight, those of z where there is room.
-inline constexpr std::array<int, 16> lane_axis{0, 0, 0, 0, 0, 2, 2, 2, 1, 1, 1, 1, 1, 2, 2, 2};
-alignas(64) inline constexpr std::array<float, 16> lane_plane{0, 1, 2, 3, 4, 0, 1, 2, 0, 1, 2, 3, 4, 3, 4, 4};
-inline constexpr std::array<std::size_t, 5> z_lane{5, 6, 7, 13, 14};
-
-constexpr std::array<std::uint8_t, 64> bytes_of_axes() {
-  std::array<std::uint8_t, 64> bytes{};
-  for (std::size_t i = 0; i < 64; ++i)
-    bytes[i] = static_cast<std::uint8_t>(4 * lane_axis[i / 4] + static_cast<int>(i % 4));
-  return bytes;
+/// Which planes bound the cells of a brick for a ray, as numbers to multiply with the size of a cell. Cells
+/// are numbered from the corner where the ray comes from. Lane x + 4 y stands for a column of cells along z.
+struct PlaneTables {
+  alignas(64) std::array<float, 16> x_enter{}, x_leave{}, y_enter{}, y_leave{};
+  std::array<float, 5> z{};
+};
+constexpr std::array<PlaneTables, 8> plane_tables() {
+  std::array<PlaneTables, 8> tables{};
+  for (unsigned down = 0; down < 8; ++down) {
+    PlaneTables& t = tables[down];
+    const auto plane = [&](unsigned axis, std::size_t i) {
+      return static_cast<float>(down >> axis & 1u ? 4 - i : i);
+    };
+    for (std::size_t lane = 0; lane < 16; ++lane) {
+      t.x_enter[lane] = plane(0, lane % 4);
+      t.x_leave[lane] = plane(0, lane % 4 + 1);
+      t.y_enter[lane] = plane(1, lane / 4);
+      t.y_leave[lane] = plane(1, lane / 4 + 1);
+    }
+    for (std::size_t i = 0; i < 5; ++i) t.z[i] = plane(2, i);
+  }
+  return tables;
 }
-alignas(64) inline constexpr std::array<std::uint8_t, 64> axis_bytes = bytes_of_axes();
+inline constexpr std::array<PlaneTables, 8> planes_by_octant = plane_tables();
 
 /// Tables that reverse a 4x4x4 mask along any axes: what a byte's low and high half become, and where bytes
 /// go.
@@ -68,123 +83,79 @@ constexpr std::array<MirrorTables, 8> mirror_tables() {
   return tables;
 }
 inline constexpr std::array<MirrorTables, 8> mirrors = mirror_tables();
+/// What to xor the number of a cell with, by octant.
+inline constexpr std::array<unsigned, 8> mirror_of{0, 3, 12, 15, 48, 51, 60, 63};
 
-/// All t here are for FilterRay's scaled direction.
+/// A ray made ready to be traced, in floats. All t here are for its direction scaled by a power of two to a
+/// 1-norm of 1..2.
 ///
-/// Why no cell is missed. Planes and origin are floats; plane - origin, the inverse of the direction, that
-/// with its slack and the product are each off by 2^-24 of themselves, in all by less than `slack`, however
-/// far the ray comes from. So the t at which a cell is entered is never computed too late, nor the t at which
-/// it is left too early (Ize, "Robust BVH Ray Traversal", 2013). What is flushed to zero, and directions of
-/// 0, taken for 2^-127, are paid for by the margin around boxes and cells (brick_build.cpp).
-class BrickRay {
- public:
-  /// Whether what is said above holds for a ray: not where scaling it would leave the range of floats.
-  static bool takes(const FilterRay& ray) {
-    return ray.ray.tnear >= 0 && ray.scale > 0x1p-100 && ray.scale < 0x1p100;
-  }
+/// Why no cell of a brick is missed. The t at which it crosses a plane, (low + i * size - origin) /
+/// direction, is computed as (low - origin) * inverse + i * (size * inverse): off by no more than some 2^-24
+/// of itself and some 2^-24 of what the extent of the brick on that axis is in t. The former is made up for
+/// by `slack` wherever the t of planes are compared (as Ize, "Robust BVH Ray Traversal", 2013), the latter by
+/// the margin by which bricks and cells are grown before primitives are registered (brick_build.cpp). A
+/// direction below 2^-40 on an axis is taken for that: the ray, which starts near the scene, is moved by less
+/// than the margin. Neighbouring cells have the plane between them in common, and t grow with the planes'
+/// numbers however they are rounded.
+struct BrickRay {
+  const Ray* ray = nullptr;          ///< as given
+  std::array<float, 3> direction{};  ///< scaled
+  std::array<float, 3> inverse{};    ///< of that; 2^40 in place of infinity
+  float scale = 1;                   ///< a power of two: t for the scaled direction is t * scale
+  unsigned octant = 0;               ///< the set of axes along which it goes down, bit by bit
 
-  explicit HWY_INLINE BrickRay(const FilterRay& ray) {
-    constexpr float slack = 0x1p-21f, largest = 0x1p127f;
-    const Floats d;
-    const hn::Full128<float> d4;
-    const auto one = hn::Set(d4, 1.0f);
-    const auto along =
-        hn::Mul(hn::LoadU(d4, &ray.ray.direction.x), hn::Set(d4, static_cast<float>(1 / ray.scale)));
-    const auto inverse = hn::IfThenElse(hn::Lt(hn::Abs(along), hn::Set(d4, FLT_MIN)), hn::Set(d4, largest),
-                                        hn::Div(one, along));
-    const auto is_down = hn::Lt(along, hn::Zero(d4));
-    alignas(16) std::array<float, 4> enter, leave, down;
-    hn::Store(hn::Mul(inverse, hn::Set(d4, 1 - slack)), d4, enter.data());
-    hn::Store(hn::Mul(inverse, hn::Set(d4, 1 + slack)), d4, leave.data());
-    hn::Store(hn::IfThenElseZero(is_down, hn::Set(d4, 4.0f)), d4, down.data());
-    std::uint64_t axes = 0;
-    hn::StoreMaskBits(d4, is_down, reinterpret_cast<std::uint8_t*>(&axes));
-    axes &= 7u;
-    mirror_ = static_cast<unsigned>((axes & 1u) * 3 | (axes & 2u) * 6 | (axes & 4u) * 12);
-    tables_ = &mirrors[axes];
-    for (std::size_t v = 0; v < vectors; ++v) {
-      origin_[v] = by_lane(&ray.ray.origin.x, v);
-      enter_[v] = by_lane(enter.data(), v);
-      leave_[v] = by_lane(leave.data(), v);
-      // Planes are counted from where the ray comes from.
-      plane_[v] = hn::Abs(hn::Sub(by_lane(down.data(), v), hn::Load(d, &lane_plane[v * lanes])));
-    }
-  }
+  /// A t of the given ray as one of the scaled, at least that, or at most: by more than all roundings.
+  float scaled_up(float t) const { return std::max(t, FLT_MIN) * scale * (1 + 0x1p-20f) + FLT_MIN; }
+  float scaled_down(float t) const { return std::min(t, FLT_MAX) * scale * (1 - 0x1p-20f); }
 
   /// The occupied cells that the ray pierces with tnear <= t <= tmax, in the order in which it meets them:
-  /// bit i stands for the cell i ^ mirror().
+  /// bit i stands for the cell i ^ mirror_of[octant].
   HWY_INLINE std::uint64_t pierced(const BrickNode& node, float tnear, float tmax) const {
     const Floats d;
-    // Where the ray crosses the planes.
-    alignas(64) std::array<float, 16> enters, leaves;
-    FloatVector enter[vectors], leave[vectors];
-    for (std::size_t v = 0; v < vectors; ++v) {
-      const FloatVector plane =
-          hn::Add(by_lane(node.low.data(), v), hn::Mul(plane_[v], by_lane(node.size.data(), v)));
-      const FloatVector distance = hn::Sub(plane, origin_[v]);
-      enter[v] = hn::Mul(distance, enter_[v]);
-      leave[v] = hn::Mul(distance, leave_[v]);
-      hn::Store(enter[v], d, &enters[v * lanes]);
-      hn::Store(leave[v], d, &leaves[v * lanes]);
-    }
+    const PlaneTables& planes = planes_by_octant[octant];
+    // Where it crosses the first plane of an axis, and how far apart the next ones are.
+    const auto first = [&](std::size_t a, float origin) {
+      return hn::Mul(hn::Sub(hn::Set(d, node.low[a]), hn::Set(d, origin)), hn::Set(d, inverse[a]));
+    };
+    const auto step = [&](std::size_t a) {
+      return hn::Mul(hn::Set(d, node.size[a]), hn::Set(d, inverse[a]));
+    };
+    const FloatVector x = first(0, ray->origin.x), y = first(1, ray->origin.y), z = first(2, ray->origin.z);
+    const FloatVector dx = step(0), dy = step(1), dz = step(2);
 
-    // The sixteen columns of cells along z: lane x + 4 y.
+    FloatVector layer[5];  // t at the planes of z
+    for (std::size_t i = 0; i < 5; ++i) layer[i] = hn::MulAdd(hn::Set(d, planes.z[i]), dz, z);
+    const FloatVector x_enter = hn::MulAdd(hn::Load(d, planes.x_enter.data()), dx, x);
+    const FloatVector x_leave = hn::MulAdd(hn::Load(d, planes.x_leave.data()), dx, x);
+    constexpr float slack = 0x1p-20f;
+    const FloatVector earlier = hn::Set(d, 1 - slack), later = hn::Set(d, 1 + slack);
     std::uint64_t cells = 0;
-    for (std::size_t v = 0; v < vectors; ++v) {
-      FloatVector first = hn::Set(d, tnear), last = hn::Set(d, tmax);
-      if constexpr (lanes >= 8) {
-        constexpr std::size_t y_vector = 8 / lanes, y_lane = 8 % lanes;
-        alignas(64) std::int32_t x[lanes], x1[lanes], y[lanes], y1[lanes];
-        for (std::size_t i = 0; i < lanes; ++i) {
-          x[i] = static_cast<std::int32_t>(i % 4);
-          x1[i] = x[i] + 1;
-          y[i] = static_cast<std::int32_t>(y_lane + (v * lanes + i) / 4);
-          y1[i] = y[i] + 1;
-        }
-        const auto from = [&](FloatVector vector, const std::int32_t* index) {
-          return hn::TableLookupLanes(vector, hn::SetTableIndices(d, index));
-        };
-        first = hn::Max(first, hn::Max(from(enter[0], x), from(enter[y_vector], y)));
-        last = hn::Min(last, hn::Min(from(leave[0], x1), from(leave[y_vector], y1)));
-      } else {
-        first = hn::Max(first, hn::Max(hn::LoadU(d, &enters[0]), hn::Set(d, enters[8 + v])));
-        last = hn::Min(last, hn::Min(hn::LoadU(d, &leaves[1]), hn::Set(d, leaves[9 + v])));
-      }
-      for (std::size_t z = 0; z < 4; ++z) {
-        const auto in = hn::Max(first, hn::Set(d, enters[z_lane[z]]));
-        const auto out = hn::Min(last, hn::Set(d, leaves[z_lane[z + 1]]));
-        cells |= bits_of(hn::Le(in, out)) << (16 * z + v * lanes);
+    for (std::size_t v = 0; v < widest_vector / lanes; ++v) {
+      const FloatVector y_enter = hn::MulAdd(hn::Load(d, &planes.y_enter[v * lanes]), dy, y);
+      const FloatVector y_leave = hn::MulAdd(hn::Load(d, &planes.y_leave[v * lanes]), dy, y);
+      const FloatVector enter = hn::Max(hn::Mul(hn::Max(x_enter, y_enter), earlier), hn::Set(d, tnear));
+      const FloatVector leave = hn::Min(hn::Mul(hn::Min(x_leave, y_leave), later), hn::Set(d, tmax));
+      const auto column = hn::Le(enter, leave);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const auto cell = hn::And(column, hn::And(hn::Le(enter, layer[i + 1]), hn::Le(layer[i], leave)));
+        cells |= bits_of(cell) << (16 * i + v * lanes);
       }
     }
     return cells & mirrored(node.occupied);
   }
 
-  unsigned mirror() const { return mirror_; }
-
- private:
-  static constexpr std::size_t vectors = widest_vector / lanes;  // that hold sixteen floats
-
-  /// Three numbers by axis as sixteen by lane.
-  static HWY_INLINE FloatVector by_lane(const float* by_axis, std::size_t v) {
-    const Floats d;
-    return hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(Bytes(), hn::LoadDup128(d, by_axis)),
-                                               hn::Load(Bytes(), &axis_bytes[4 * v * lanes])));
-  }
   HWY_INLINE std::uint64_t mirrored(std::uint64_t mask) const {
     const hn::Full128<std::uint8_t> d8;
     const hn::Full128<std::uint64_t> d64;
+    const MirrorTables& tables = mirrors[octant];
     const auto words = hn::Set(d64, mask);
     const auto half = hn::Set(d8, std::uint8_t{15});
     const auto low = hn::And(hn::BitCast(d8, words), half);
     const auto high = hn::And(hn::BitCast(d8, hn::ShiftRight<4>(words)), half);
-    const auto rows = hn::Or(hn::TableLookupBytes(hn::Load(d8, tables_->low.data()), low),
-                             hn::TableLookupBytes(hn::Load(d8, tables_->high.data()), high));
-    return hn::GetLane(hn::BitCast(d64, hn::TableLookupBytes(rows, hn::Load(d8, tables_->byte.data()))));
+    const auto rows = hn::Or(hn::TableLookupBytes(hn::Load(d8, tables.low.data()), low),
+                             hn::TableLookupBytes(hn::Load(d8, tables.high.data()), high));
+    return hn::GetLane(hn::BitCast(d64, hn::TableLookupBytes(rows, hn::Load(d8, tables.byte.data()))));
   }
-
-  FloatVector origin_[vectors], enter_[vectors], leave_[vectors], plane_[vectors];
-  const MirrorTables* tables_;
-  unsigned mirror_;
 };
 
 }  // namespace raymeter::HWY_NAMESPACE

@@ -6,14 +6,12 @@
 
 #include "accel/cell_grid.h"
 #include "accel/memory_meter.h"
+#include "accel/triangle_rows.h"
 #include "accel/walk_space.h"
-#include "scenes/geometry/primitives.h"
 
 namespace raymeter {
 
-/// A box cut into 4x4x4 cells, of which a mask says which are occupied. The planes between them are the
-/// floats low + i * size, i = 0..4, rounded after the product and after the sum: the traversal computes the
-/// same.
+/// A box cut into 4x4x4 cells, of which a mask says which are occupied.
 ///
 /// Occupancy masks over 64 children: Museth, "VDB: High-Resolution Sparse Volumes with Dynamic Topology",
 /// 2013, and Laine & Karras, "Efficient Sparse Voxel Octrees", 2010; the tight box of a node is that of
@@ -35,28 +33,31 @@ struct alignas(64) BrickNode {
   std::uint32_t child(unsigned cell) const {
     return base + static_cast<std::uint32_t>(std::popcount(occupied & ((std::uint64_t{1} << cell) - 1)));
   }
-  float plane(int axis, int i) const {
+  /// Where the planes between the cells are, i = 0..4.
+  double plane(int axis, int i) const {
     const auto a = static_cast<std::size_t>(axis);
-    const float offset = static_cast<float>(i) * size[a];
-    return low[a] + offset;
+    return double(low[a]) + i * double(size[a]);
   }
 };
 static_assert(sizeof(BrickNode) == 64);
 
-/// A leaf's words: for its n triangles ten rows of n floats, corners a, b and c (x, y, z each) and the
-/// primitives' indices; then the indices of the others.
-inline constexpr std::size_t triangle_rows = 10;
+/// A leaf's words: the rows of its triangles, then the indices of the others.
 /// The most floats that a kernel reads at once: so many words follow the last leaf.
 inline constexpr std::size_t widest_vector = 16;
 
-/// Writes triangle `column` of `count` into the rows that begin at `rows`.
-inline void write_triangle(std::uint32_t* rows, std::size_t count, std::size_t column,
-                           const Triangle& triangle, std::uint32_t primitive) {
-  rows += column;
-  for (const Vec3& corner : {triangle.a, triangle.b, triangle.c})
-    for (int axis = 0; axis < 3; ++axis, rows += count) *rows = std::bit_cast<std::uint32_t>(corner[axis]);
-  *rows = primitive;
-}
+/// A grid in floats, as BrickWalk needs it.
+struct FloatGrid {
+  std::array<float, 3> low{}, size{}, inverse_size{}, layers{};
+  /// Where rays may start: within four diagonals of the box; nowhere, where products of lengths would leave
+  /// the range of floats.
+  std::array<float, 3> nearby_low{}, nearby_high{};
+  std::array<std::int32_t, 3> stride{};  ///< from layer to layer, in cells
+  float cell_reach = 0;                  ///< 1-norm from one corner of a cell to the other, with some margin
+
+  FloatGrid() = default;
+  /// `grid` begins at a float on each axis.
+  explicit FloatGrid(const CellGrid& grid);
+};
 
 /// A uniform grid whose occupied cells each hold a tree of bricks.
 struct Bricks {
@@ -68,10 +69,12 @@ struct Bricks {
         words(MeteredAllocator<std::uint32_t>(meter)) {}
 
   WalkSpace space;
-  CellGrid grid;
+  CellGrid cells;
+  FloatGrid grid;                      ///< the same
   MeteredVector<std::uint32_t> roots;  ///< by cell: its root among the nodes, or empty_cell
   MeteredVector<BrickNode> nodes;
   MeteredVector<std::uint32_t> words;
+  double margin = 0;        ///< what nodes' boxes and cells are grown by, at least
   std::uint32_t depth = 0;  ///< levels of bricks below a root, at most
 };
 

@@ -7,10 +7,9 @@
 #define RAYMETER_TRIANGLE_BLOCK_INL
 #endif
 
-#include <algorithm>
-#include <limits>
-
 #include "accel/brick_ray-inl.h"
+#include "accel/triangle_rows.h"
+#include "scenes/geometry/vec3.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
@@ -26,63 +25,70 @@ HWY_INLINE FloatVec3 cross_of(const FloatVec3& a, const FloatVec3& b) {
 HWY_INLINE FloatVector dot_of(const FloatVec3& a, const FloatVec3& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
-
 HWY_INLINE FloatVec3 minus(const FloatVec3& a, const FloatVec3& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE FloatVector norm_of(const FloatVec3& v) {
-  return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
-}
 
-/// `t` of the ray's direction as one of FilterRay's, moved by so much of itself that all roundings are paid
-/// for.
-HWY_INLINE float scaled_up(const FilterRay& ray, float t) {
-  const double scaled = std::max(t, FLT_MIN) * ray.scale * (1 + 0x1p-20);
-  return scaled < FLT_MAX ? static_cast<float>(scaled) : std::numeric_limits<float>::infinity();
-}
-HWY_INLINE float scaled_down(const FilterRay& ray, float t) {
-  return static_cast<float>(std::min(t * ray.scale * (1 - 0x1p-20), double(FLT_MAX)));
-}
-
-/// The interval in which hits matter, in FilterRay's scaled t: floats that are certainly outside it, and such
-/// as are certainly inside. For rays that BrickRay takes.
+/// An interval of scaled t, in floats: outside and inside of what is certain.
 struct FilterInterval {
-  explicit HWY_INLINE FilterInterval(const FilterRay& ray)
-      : before(scaled_down(ray, ray.ray.tnear)),
-        after(scaled_up(ray, ray.ray.tfar)),
-        inside_from(scaled_up(ray, ray.ray.tnear)),
-        inside_to(scaled_down(ray, std::min(ray.ray.tfar, FLT_MAX))) {}
+  /// Of the given ray.
+  explicit HWY_INLINE FilterInterval(const BrickRay& ray)
+      : before(ray.scaled_down(ray.ray->tnear)),
+        after(ray.scaled_up(ray.ray->tfar)),
+        inside_from(ray.scaled_up(ray.ray->tnear)),
+        inside_to(ray.scaled_down(ray.ray->tfar)) {}
 
-  float before, after;  ///< nothing at or below `before`, or above `after`, matters
-  float inside_from, inside_to;
+  float before, after;           ///< nothing at or below `before`, or above `after`, matters
+  float inside_from, inside_to;  ///< everything between these does
 };
 
-/// The answers of filter.h's test for a block of triangles, with its error bounds.
+/// One ray against a block of triangles, bits by lane.
 struct BlockTest {
-  hn::Mask<Floats> candidates;  ///< may be hit in the interval
-  hn::Mask<Floats> inside;      ///< the ray's line certainly passes inside: `decide_inside` will do
-  hn::Mask<Floats> certain;     ///< of these, the ones that `decide` certainly accepts in the whole interval
-  FloatVector height, height_error, det, det_error;  ///< t is height / det, det > 0
+  std::uint64_t candidates = 0;  ///< the ray's line may pass through the triangle
+  std::uint64_t inside = 0;      ///< it certainly does, and not through its edges
+  FloatVector det, height;       ///< t is height / det
+  FloatVector edge;              ///< in TriangleRows::edge_unit
+  float reach;
 
-  /// Bounds of the t of certain ones.
-  HWY_INLINE FloatVector least_t() const {
+  struct Hits {
+    std::uint64_t possible;  ///< of the candidates: t may lie in the interval
+    std::uint64_t certain;   ///< of these: passed inside, and `decide` certainly accepts it
+  };
+  /// What t says of the candidates, with the bounds of filter.h for det and height.
+  HWY_INLINE Hits within(const FilterInterval& interval) const {
     const Floats d;
-    return hn::Mul(hn::Div(hn::Sub(height, height_error), hn::Add(det, det_error)), hn::Set(d, 1 - 0x1p-20f));
-  }
-  HWY_INLINE FloatVector greatest_t() const {
-    const Floats d;
-    return hn::Mul(hn::Div(hn::Add(height, height_error), hn::Sub(det, det_error)), hn::Set(d, 1 + 0x1p-20f));
+    // 2^-20 edge^2, and that times (reach + edge); infinite where something may have overflowed.
+    constexpr float unit = TriangleRows::edge_unit;
+    const FloatVector edges = hn::Mul(edge, edge);
+    const FloatVector det_error = hn::Mul(edges, hn::Set(d, 0x1p-20f / (unit * unit)));
+    const FloatVector distance = hn::MulAdd(edge, hn::Set(d, 1 / unit), hn::Set(d, reach));
+    const FloatVector height_error = hn::Mul(hn::Mul(edges, distance), hn::Set(d, 0x1p-20f / (unit * unit)));
+    const FloatVector positive = hn::Abs(det), along = hn::Xor(height, hn::And(det, hn::SignBit(d)));
+    const FloatVector least_det = hn::Sub(positive, det_error), greatest_det = hn::Add(positive, det_error);
+    const FloatVector lowest = hn::Sub(along, height_error), highest = hn::Add(along, height_error);
+    const auto beyond = hn::Or(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.after), greatest_det)),
+                               hn::Lt(highest, hn::Mul(hn::Set(d, interval.before), least_det)));
+    const auto steep = hn::Gt(least_det, det_error);
+    const auto between = hn::And(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.inside_from), greatest_det)),
+                                 hn::Le(highest, hn::Mul(hn::Set(d, interval.inside_to), least_det)));
+    const std::uint64_t possible = candidates & ~bits_of(hn::And(steep, beyond));
+    return {possible, possible & inside & bits_of(hn::And(steep, between))};
   }
 };
 
-/// The triangles first, first + 1, ... of a leaf's rows of `count` floats (bricks.h).
-HWY_INLINE BlockTest test_block(const FilterRay& ray, const std::uint32_t* words, std::uint32_t count,
-                                std::uint32_t first, const FilterInterval& interval) {
+/// The triangles first, first + 1, ... of `rows`. `reach`: an upper bound of the 1-norm from the ray's origin
+/// to some point of each triangle.
+///
+/// Moeller & Trumbore 1997. Which side of each edge does the line pass? The error bounds are those of
+/// filter.h. What they call edge is there in the rows; what they call reach, the distance of a triangle's
+/// first corner, is at most that of any of its points and the edge.
+HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, std::uint32_t first,
+                                float reach) {
   const Floats d;
-  const std::uint32_t* row = words + first;
+  const float* row = rows.row(0) + first;
   const auto next = [&] {
-    const FloatVector vector = hn::BitCast(d, hn::LoadU(hn::Repartition<std::uint32_t, Floats>(), row));
-    row += count;
+    const FloatVector vector = hn::LoadU(d, row);
+    row += rows.count;
     return vector;
   };
   const auto next3 = [&] {
@@ -92,51 +98,54 @@ HWY_INLINE BlockTest test_block(const FilterRay& ray, const std::uint32_t* words
     v.z = next();
     return v;
   };
+  const auto broadcast = [&](const float* v) {
+    return FloatVec3{hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
+  };
   const FloatVec3 a = next3(), e1 = minus(next3(), a), e2 = minus(next3(), a);
-  const FloatVec3 direction{hn::Set(d, ray.direction.x), hn::Set(d, ray.direction.y),
-                            hn::Set(d, ray.direction.z)};
-  const FloatVec3 s{hn::Sub(hn::Set(d, ray.ray.origin.x), a.x), hn::Sub(hn::Set(d, ray.ray.origin.y), a.y),
-                    hn::Sub(hn::Set(d, ray.ray.origin.z), a.z)};
-
-  // Moeller & Trumbore 1997.
+  const FloatVec3 direction = broadcast(ray.direction.data());
+  const FloatVec3 s = minus(broadcast(&ray.ray->origin.x), a);
   const FloatVec3 p = cross_of(direction, e2), q = cross_of(s, e1);
-  const FloatVector signed_det = dot_of(e1, p), u = dot_of(s, p), v = dot_of(direction, q);
-  const FloatVector w = hn::Sub(hn::Sub(signed_det, u), v);
-  const FloatVector reach = hn::Add(norm_of(s), hn::Set(d, filter::tiny));
-  const FloatVector edges = hn::Add(hn::Max(norm_of(e1), norm_of(e2)), hn::Set(d, filter::tiny));
-  const FloatVector edges2 = hn::Mul(edges, edges);
-  const FloatVector area = hn::MulAdd(hn::Add(edges, edges), reach, edges2);
-  const FloatVector volume = hn::Mul(edges2, reach);
-  const FloatVector side_error = hn::Mul(area, hn::Set(d, 0x1.8p-20f));
-  const FloatVector least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
-  const FloatVector large = hn::Set(d, filter::large);
-  // Where something may have overflowed nothing is rejected, and nothing is certain.
-  const auto bounded = hn::And(hn::Lt(area, large), hn::Lt(volume, large));
-  const auto outside = hn::And(hn::Lt(least, hn::Neg(side_error)), hn::Gt(greatest, side_error));
-  const auto inside = hn::Or(hn::Gt(least, side_error), hn::Lt(greatest, hn::Neg(side_error)));
+  const FloatVector det = dot_of(e1, p), u = dot_of(s, p), v = dot_of(direction, q);
+  const FloatVector w = hn::Sub(hn::Sub(det, u), v);
 
-  BlockTest test;
-  const FloatVector error = hn::Set(d, 0x1p-20f);
-  test.det = hn::Abs(signed_det);
-  test.det_error = hn::Mul(edges2, error);
-  test.height = hn::Xor(dot_of(e2, q), hn::And(signed_det, hn::SignBit(d)));
-  test.height_error = hn::Mul(volume, error);
-  const FloatVector least_det = hn::Sub(test.det, test.det_error),
-                    greatest_det = hn::Add(test.det, test.det_error);
-  const FloatVector lowest = hn::Sub(test.height, test.height_error),
-                    highest = hn::Add(test.height, test.height_error);
-  const auto steep = hn::Gt(least_det, hn::Zero(d));
-  const auto beyond = hn::Or(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.after), greatest_det)),
-                             hn::Lt(highest, hn::Mul(hn::Set(d, interval.before), least_det)));
-  const auto rejected = hn::And(bounded, hn::Or(outside, hn::And(steep, beyond)));
-  const auto there = hn::FirstN(d, count - first);
-  test.candidates = hn::AndNot(rejected, there);
-  test.inside = hn::And(bounded, inside);
-  test.certain = hn::And(hn::And(hn::And(test.candidates, test.inside), hn::Gt(least_det, test.det_error)),
-                         hn::And(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.inside_from), greatest_det)),
-                                 hn::Le(highest, hn::Mul(hn::Set(d, interval.inside_to), least_det))));
-  return test;
+  // 0x1.8p-20 * edge * (edge + 2 * (reach + edge)), infinite where something may have overflowed: nothing is
+  // rejected then, and nothing is certain.
+  const FloatVector edge = next();
+  const FloatVector area =
+      hn::Mul(edge, hn::MulAdd(edge, hn::Set(d, 3 / TriangleRows::edge_unit), hn::Set(d, 2 * reach)));
+  const FloatVector error = hn::Mul(area, hn::Set(d, 0x1.8p-20f / TriangleRows::edge_unit));
+  const FloatVector least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
+  const auto outside = hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(greatest, error));
+  const auto inside = hn::Or(hn::Gt(least, error), hn::Lt(greatest, hn::Neg(error)));
+  return {bits_of(hn::AndNot(outside, hn::FirstN(d, rows.count - first))),
+          bits_of(inside),
+          det,
+          dot_of(e2, q),
+          edge,
+          reach};
 }
+
+/// Where the ray's line meets the plane of a triangle, in double: t = height / det within the errors, det >
+/// 0, for the ray as given. As decide_inside, and with its bounds, of which `edge` and `reach` (see
+/// test_block) bound the norms.
+struct PlaneHit {
+  double height, det, height_error, det_error;
+
+  HWY_INLINE PlaneHit(const BrickRay& ray, const Triangle& triangle, double edge, double reach) {
+    const Vec3d d = to_double(ray.ray->direction), ta = to_double(triangle.a),
+                a = ta - to_double(ray.ray->origin);
+    const Vec3d n = cross(to_double(triangle.b) - ta, to_double(triangle.c) - ta);
+    const double signed_det = dot(d, n), signed_height = dot(a, n);
+    det = std::abs(signed_det);
+    height = signed_det < 0 ? -signed_height : signed_height;
+    constexpr double error = 10 * 0x1p-53;
+    const double area_error = error * edge * edge;
+    det_error = area_error * (2 * double(ray.scale));
+    height_error = area_error * (reach + edge);
+  }
+  /// Whether the errors leave something to be said.
+  bool known() const { return det_error < 0x1p-10 * det; }
+};
 
 }  // namespace raymeter::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

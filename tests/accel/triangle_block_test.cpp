@@ -25,14 +25,11 @@ namespace raymeter {
 /// A lane of BlockTest.
 struct TriangleClaim {
   bool candidate, inside, certain;
-  float least_t, greatest_t;
 };
 struct BlockTester {
   const char* isa;
-  bool (*takes)(const FilterRay&);
-  float (*scaled_up)(const FilterRay&, float t);
-  /// What is claimed of all triangles of a leaf, when hits up to the scaled t `after` matter.
-  void (*test)(const FilterRay&, const std::uint32_t* words, float after, std::span<TriangleClaim>);
+  /// What is claimed of all triangles of a leaf, when hits up to tmax matter.
+  void (*test)(const FilterRay&, const std::uint32_t* words, float tmax, std::span<TriangleClaim>);
 };
 
 }  // namespace raymeter
@@ -43,31 +40,29 @@ HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
 namespace {
 
-bool takes(const FilterRay& ray) {
-  return BrickRay::takes(ray);
-}
-float scaled(const FilterRay& ray, float t) {
-  return scaled_up(ray, t);
-}
-
-void test_leaf(const FilterRay& ray, const std::uint32_t* words, float after,
+void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
                std::span<TriangleClaim> claims) {
   const FlushDenormals mode;
+  const Vec3 direction = filter.direction;
+  const BrickRay ray{
+      &filter.ray, {direction.x, direction.y, direction.z}, {}, static_cast<float>(filter.scale), 0};
   FilterInterval interval(ray);
-  interval.after = std::min(interval.after, after);
-  const auto count = static_cast<std::uint32_t>(claims.size());
-  for (std::uint32_t first = 0; first < count; first += lanes) {
-    const BlockTest test = test_block(ray, words, count, first, interval);
-    alignas(64) std::array<float, lanes> least, greatest;
-    hn::Store(test.least_t(), Floats(), least.data());
-    hn::Store(test.greatest_t(), Floats(), greatest.data());
+  interval.after = std::min(interval.after, ray.scaled_up(tmax));
+  const TriangleRows rows{words, static_cast<std::uint32_t>(claims.size())};
+  float reach = 0;
+  for (std::uint32_t i = 0; i < rows.count; ++i) {
+    const Vec3d away = to_double(filter.ray.origin) - to_double(rows.triangle(i).a);
+    reach = std::max(reach, -float_below(-(std::abs(away.x) + std::abs(away.y) + std::abs(away.z))));
+  }
+  for (std::uint32_t first = 0; first < rows.count; first += lanes) {
+    const BlockTest test = test_block(ray, rows, first, reach);
+    const auto [possible, certain] = test.within(interval);
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-      const auto claimed = [&](hn::Mask<Floats> mask) { return (bits_of(mask) >> lane & 1u) != 0; };
-      if (first + lane < count)
-        claims[first + lane] = {claimed(test.candidates), claimed(test.inside), claimed(test.certain),
-                                least[lane], greatest[lane]};
+      const auto claimed = [&](std::uint64_t lanes_of) { return (lanes_of >> lane & 1u) != 0; };
+      if (first + lane < rows.count)
+        claims[first + lane] = {claimed(possible), claimed(test.inside), claimed(certain)};
       else
-        EXPECT_FALSE(claimed(test.candidates) || claimed(test.certain)) << "there is no such triangle";
+        EXPECT_FALSE(claimed(possible) || claimed(certain)) << "there is no such triangle";
     }
   }
 }
@@ -76,7 +71,7 @@ void test_leaf(const FilterRay& ray, const std::uint32_t* words, float after,
 
 const BlockTester& block_tester() {
   constexpr const char* isa = HWY_TARGET == HWY_AVX3 ? "avx512" : HWY_TARGET == HWY_AVX2 ? "avx2" : "sse42";
-  static constexpr BlockTester tester{isa, takes, scaled, test_leaf};
+  static constexpr BlockTester tester{isa, test_leaf};
   return tester;
 }
 
@@ -102,9 +97,9 @@ std::vector<const BlockTester*> testers() {
 /// A leaf of triangles, and the exact answers to a ray.
 struct Leaf {
   explicit Leaf(std::vector<Triangle> given) : triangles(std::move(given)) {
-    words.resize(triangle_rows * triangles.size() + widest_vector);
-    for (std::uint32_t i = 0; i < triangles.size(); ++i)
-      write_triangle(words.data(), triangles.size(), i, triangles[i], i);
+    const auto count = static_cast<std::uint32_t>(triangles.size());
+    words.resize(TriangleRows::rows * count + widest_vector);
+    for (std::uint32_t i = 0; i < count; ++i) TriangleRows::put(words.data(), count, i, triangles[i], i);
   }
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> words;
@@ -193,27 +188,27 @@ CloseCall close_call(Random& random) {
 
 class TriangleBlock : public testing::TestWithParam<const BlockTester*> {
  protected:
-  std::vector<TriangleClaim> claims(const Leaf& leaf, const FilterRay& ray, float after) const {
+  std::vector<TriangleClaim> claims(const Leaf& leaf, const FilterRay& ray, float tmax) const {
     std::vector<TriangleClaim> result(leaf.triangles.size());
-    GetParam()->test(ray, leaf.words.data(), after, result);
+    GetParam()->test(ray, leaf.words.data(), tmax, result);
     return result;
   }
 
   /// Whether everything that is claimed about a leaf holds.
   void expect_true_claims(const Leaf& leaf, const Ray& ray, float tmax, bool exactly = false) {
     const FilterRay filter(ray);
-    if (!is_traceable(ray) || !GetParam()->takes(filter)) return;
+    // Others are not tested in blocks.
+    if (!is_traceable(ray) || ray.tnear < 0 || filter.scale < 0x1p-100 || filter.scale > 0x1p100) return;
     const Ray line{ray.origin, -no_hit, ray.direction, no_hit};
     std::vector<float> truth;
     for (const Triangle& triangle : leaf.triangles)
       truth.push_back(exactly ? reference::decide(ray, triangle) : decide(ray, triangle));
 
-    const auto all = claims(leaf, filter, GetParam()->scaled_up(filter, tmax));
+    const auto all = claims(leaf, filter, tmax);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const TriangleClaim& claim = all[i];
       const Triangle& triangle = leaf.triangles[i];
       const float t = truth[i];
-      const double scaled_t = t * filter.scale;
       ASSERT_TRUE(claim.candidate || t == no_hit || t > tmax) << "the hit at " << t << " is rejected";
       if (claim.inside) {
         ASSERT_EQ(decide_inside(line, triangle), decide(line, triangle)) << "is not inside";
@@ -221,10 +216,8 @@ class TriangleBlock : public testing::TestWithParam<const BlockTester*> {
       if (claim.certain) {
         ASSERT_TRUE(claim.candidate && claim.inside);
         ASSERT_NE(t, no_hit) << "there is certainly no hit";
-        ASSERT_TRUE(claim.least_t <= scaled_t && scaled_t <= claim.greatest_t)
-            << scaled_t << " is not in " << claim.least_t << " .. " << claim.greatest_t;
         // A walk goes on with this bound: what it then rejects lies behind, this one does not.
-        const auto rest = claims(leaf, filter, claim.greatest_t);
+        const auto rest = claims(leaf, filter, t);
         for (std::size_t j = 0; j < rest.size(); ++j)
           ASSERT_TRUE(rest[j].candidate || truth[j] > t) << "a nearer hit is rejected";
       }
