@@ -3,9 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cfloat>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
 
+#include "accel/cell_lists.h"
+#include "accel/cell_overlap.h"
 #include "accel/parallel.h"
 #include "scenes/base/error.h"
 #include "scenes/geometry/rounding.h"
@@ -17,7 +24,7 @@ namespace {
 /// fitted on a prototype.
 constexpr double node_cost = 55, leaf_cost = 20, block_cost = 34;
 /// A block is as many triangles as the widest vector has lanes.
-constexpr double block_size = widest_vector;
+constexpr std::size_t block_size = widest_vector;
 /// How often a ray that meets a leaf's box goes on to its triangles: it must pierce an occupied cell.
 constexpr double leaf_chance = 0.6;
 /// How much dearer a split is for each reference that it makes of one, for what leaves the cache.
@@ -25,242 +32,599 @@ constexpr double duplication_cost = 0.2;
 /// No primitive gets more references than this from splits that each seem worth it.
 constexpr double most_duplication = 8;
 
-double cost_of_leaf(std::size_t primitives, double chance) {
-  return node_cost + chance * (leaf_cost + block_cost * std::ceil(double(primitives) / block_size));
+std::size_t blocks_of(std::size_t primitives) {
+  return (primitives + block_size - 1) / block_size;
 }
+
+/// Of so many leaves with so many blocks in all, each of which goes on to its triangles with that chance.
+double cost_of_leaves(std::size_t leaves, std::size_t blocks, double chance) {
+  return node_cost * double(leaves) + chance * (leaf_cost * double(leaves) + block_cost * double(blocks));
+}
+
+/// A node of more primitives is made by all threads together; what is smaller goes to a thread in parts of
+/// about so many primitives.
+constexpr std::size_t large_node = 16384, part_size = 4096;
 
 using Corner = std::array<double, 3>;
 struct Box {
   Corner low, high;
 };
 
-class TreeBuilder {
- public:
-  TreeBuilder(const Scene& scene, const Bricks& bricks, const BrickOptions& options, MemoryMeter& meter)
-      : nodes(MeteredAllocator<BrickNode>(meter)),
-        words(MeteredAllocator<std::uint32_t>(meter)),
-        scene_(scene),
-        margin_(bricks.margin),
-        options_(options),
-        stack_(MeteredAllocator<std::uint32_t>(meter)),
-        masks_(MeteredAllocator<std::uint64_t>(meter)) {}
+/// Of each cell how many primitives meet it; or where to put the next of them.
+using CellCounts = std::array<std::uint32_t, 64>;
+std::uint64_t sum_of(const CellCounts& counts) {
+  std::uint64_t sum = 0;
+  for (const std::uint32_t n : counts) sum += n;
+  return sum;
+}
 
-  /// A tree whose root is the next node.
-  void add_tree(std::span<const std::uint32_t> primitives, const Box& cell) {
-    const std::size_t root = nodes.size();
-    nodes.emplace_back();
-    stack_.assign(primitives.begin(), primitives.end());
-    build(root, 0, cell, 0, 1);
+/// A node to be made of the primitives in its cell; or, of the primitives near a block of 4x4x4 cells of the
+/// grid, a stand-in for a node whose children are the roots there.
+struct Task {
+  std::span<const std::uint32_t> primitives;
+  std::optional<std::uint32_t> block;
+  std::uint32_t place = 0;  ///< of the node among the upper ones
+  std::uint32_t level = 0;
+  double duplication = 1;  ///< references to a primitive, by the splits above
+  Box cell{};
+  BrickNode made{};
+
+  bool is_large() const { return primitives.size() > large_node; }
+};
+
+/// Where something begins among nodes and words.
+struct Place {
+  std::uint64_t node = 0, word = 0;
+};
+
+/// Triangles of the scene, gathered in columns, so many at a time as the buffer takes.
+class GatheredTriangles {
+ public:
+  static constexpr std::size_t capacity = 256;
+  struct Buffer {
+    alignas(64) std::array<float, 9 * capacity> rows{};
+  };
+
+  GatheredTriangles(const Scene& scene, std::span<const std::uint32_t> triangles, Buffer& buffer)
+      : scene_(scene), triangles_(triangles), buffer_(buffer) {
+    if (triangles_.size() <= capacity) columns_ = gather(triangles_);
   }
 
-  MeteredVector<BrickNode> nodes;
-  MeteredVector<std::uint32_t> words;
-  std::uint32_t depth = 0;
+  std::span<const std::uint32_t> all() const { return triangles_; }
+
+  /// Calls use(columns, place of the first among the triangles) until all have been used.
+  template <class Use>
+  void for_each(const Use& use) const {
+    if (triangles_.size() <= capacity) {
+      if (!triangles_.empty()) use(columns_, 0);
+      return;
+    }
+    for (std::size_t first = 0; first < triangles_.size(); first += capacity)
+      use(gather(triangles_.subspan(first, std::min(capacity, triangles_.size() - first))), first);
+  }
 
  private:
-  /// Makes node `index` of the primitives that lie in stack_ from `first` on, and in `cell`; takes them off.
-  void build(std::size_t index, std::size_t first, const Box& cell, std::uint32_t level, double duplication) {
-    const std::size_t count = stack_.size() - first;
-    depth = std::max(depth, level);
+  TriangleColumns gather(std::span<const std::uint32_t> triangles) const {
+    const std::size_t stride = (triangles.size() + widest_vector - 1) / widest_vector * widest_vector;
+    const auto corners = scene_.triangles();
+    const auto vertices = scene_.vertices();
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      float* column = buffer_.rows.data() + i;
+      for (const std::uint32_t corner : corners[triangles[i]]) {
+        const Vec3& v = vertices[corner];
+        for (const float x : {v.x, v.y, v.z}) {
+          *column = x;
+          column += stride;
+        }
+      }
+    }
+    return {buffer_.rows.data(), stride, triangles.size()};
+  }
 
-    // The least box around what lies in the cell, cut into at most 4x4x4 cells: no axis into slices much
-    // thinner than the others.
-    const Box box = tight_box(std::span(stack_).subspan(first), cell);
-    BrickNode node;
-    std::array<int, 3> layers{4, 4, 4};
+  const Scene& scene_;
+  std::span<const std::uint32_t> triangles_;
+  Buffer& buffer_;
+  TriangleColumns columns_;
+};
+
+/// What nodes are made of, and how; safe to share between threads.
+class NodeRules {
+ public:
+  NodeRules(const Scene& scene, const Bricks& bricks, const BrickOptions& options)
+      : scene_(scene), bricks_(bricks), options_(options) {
+    for (std::size_t a = 0; a < 3; ++a) blocks_[a] = (bricks.cells.n[a] + 3) / 4;
+  }
+  const Scene& scene() const { return scene_; }
+
+  /// The grid in blocks of 4x4x4 cells, as bricks whose planes are the grid's but for their slack.
+  std::uint64_t block_count() const { return cell_count(blocks_); }
+  template <class Visit>
+  void for_each_block_near(std::uint32_t primitive, const Visit& visit) const {
+    const CellRange cells = cells_of_box(bricks_.cells, scene_.bounds_of(primitive), bricks_.space.margin);
+    for (std::uint32_t k = cells.first[2] / 4; k <= cells.last[2] / 4; ++k)
+      for (std::uint32_t j = cells.first[1] / 4; j <= cells.last[1] / 4; ++j)
+        for (std::uint32_t i = cells.first[0] / 4; i <= cells.last[0] / 4; ++i)
+          visit(i + blocks_[0] * (j + std::uint64_t{blocks_[1]} * k));
+  }
+  CutBrick block(std::uint64_t index) const {
+    const CellGrid& grid = bricks_.cells;
+    CutBrick brick;
+    brick.margin = 2 * bricks_.space.margin;
+    const auto first = first_cell(index);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int axis = static_cast<int>(a);
+      brick.layers[a] = static_cast<int>(std::min(4u, grid.n[a] - first[a]));
+      brick.node.low[a] = rounded(grid.plane(axis, first[a]));
+      brick.node.size[a] = std::max(rounded(grid.size[axis]), FLT_MIN);
+      brick.margin += 0x1p-22 * (std::abs(grid.plane(axis, first[a])) + 4 * grid.size[axis]);  // for rounding
+    }
+    return brick;
+  }
+  /// The number of a block's cell in the grid, and its box, grown by the walk's margin.
+  std::uint64_t root_cell(std::uint64_t block, unsigned cell) const {
+    const auto at = cell_at(block, cell);
+    return bricks_.cells.cell(at[0], at[1], at[2]);
+  }
+  Box root_box(std::uint64_t block, unsigned cell) const {
+    const auto at = cell_at(block, cell);
+    Box box;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int axis = static_cast<int>(a);
+      box.low[a] = bricks_.cells.plane(axis, at[a]) - bricks_.space.margin;
+      box.high[a] = bricks_.cells.plane(axis, at[a] + 1) + bricks_.space.margin;
+    }
+    return box;
+  }
+
+  /// Triangles come before all others.
+  std::size_t triangles_among(std::span<const std::uint32_t> primitives) const {
+    if (primitives.empty() || scene_.is_triangle(primitives.back())) return primitives.size();
+    const auto end = std::ranges::partition_point(primitives, [&](auto p) { return scene_.is_triangle(p); });
+    return static_cast<std::size_t>(end - primitives.begin());
+  }
+
+  Bounds bounds_of(const GatheredTriangles& triangles, std::span<const std::uint32_t> others) const {
+    Bounds bounds;
+    triangles.for_each([&](const TriangleColumns& columns, std::size_t) {
+      bounds.extend(options_.overlap->bounds_of(columns));
+    });
+    for (const std::uint32_t p : others) bounds.extend(scene_.bounds_of(p));
+    return bounds;
+  }
+
+  /// The least box around what lies in a cell, cut into at most 4x4x4 cells: no axis into slices much thinner
+  /// than the others.
+  CutBrick cut(const Bounds& bounds, const Box& cell) const {
+    const Box box = tight_box(bounds, cell);
+    CutBrick brick;
+    brick.margin = bricks_.margin;
     double longest = 0;
     for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.high[a] - box.low[a]);
     for (std::size_t a = 0; a < 3; ++a) {
-      const double extent = box.high[a] - box.low[a];
-      if (!(extent > longest / 64)) layers[a] = 1;
-      node.low[a] = float_below(box.low[a]);
-      node.size[a] = -float_below(-(box.high[a] - double(node.low[a])) / layers[a]);
+      if (!(box.high[a] - box.low[a] > longest / 64)) brick.layers[a] = 1;
+      brick.node.low[a] = float_below(box.low[a]);
+      brick.node.size[a] = -float_below(-(box.high[a] - double(brick.node.low[a])) / brick.layers[a]);
     }
+    return brick;
+  }
 
-    // Which cells each primitive meets.
-    const BrickOverlap overlap(node, layers, margin_, options_.sums_within);
-    const std::size_t first_mask = masks_.size();
-    std::array<std::uint32_t, 64> counts{};
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t cells = overlap.cells_of(scene_, stack_[first + i]);
-      masks_.push_back(cells);
-      node.occupied |= cells;
-      for (std::uint64_t rest = cells; rest != 0; rest &= rest - 1)
-        ++counts[static_cast<unsigned>(std::countr_zero(rest))];
-    }
+  /// Which cells each primitive meets.
+  void cells_of(const CutBrick& brick, const GatheredTriangles& triangles,
+                std::span<const std::uint32_t> others, std::span<std::uint64_t> cells) const {
+    triangles.for_each([&](const TriangleColumns& columns, std::size_t first) {
+      options_.overlap->cells_of(brick, columns, &cells[first]);
+    });
+    std::size_t i = cells.size() - others.size();
+    for (const std::uint32_t p : others) cells[i++] = cells_of_other(brick, scene_, p);
+  }
+  void count(std::span<const std::uint64_t> cells, CellCounts& counts) const {
+    options_.overlap->count_bits(cells, counts);
+  }
 
-    const double more = split_duplication(count, counts);
-    const bool separates = more < std::popcount(node.occupied);  // not every primitive meets every cell
-    if (!separates || level == deepest_brick || duplication * more > most_duplication ||
-        !worth_splitting(node, layers, counts, count, more) || !can_be_split(node, layers)) {
-      make_leaf(node, std::span(stack_).subspan(first));
-      nodes[index] = node;
-    } else {
-      const std::size_t base = nodes.size();
-      node.base = static_cast<std::uint32_t>(base);
-      nodes[index] = node;
-      nodes.resize(base + static_cast<std::size_t>(std::popcount(node.occupied)));
-      const std::size_t end = first + count;
-      for (std::uint64_t rest = node.occupied; rest != 0; rest &= rest - 1) {
-        const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-        for (std::size_t i = 0; i < count; ++i)
-          if (masks_[first_mask + i] >> bit & 1u) stack_.push_back(stack_[first + i]);
-        build(node.child(bit), end, cell_of(node, bit), level + 1, duplication * more);
-      }
-    }
-    masks_.resize(first_mask);
-    stack_.resize(first);
+  /// Whether to look at the cells of so many primitives at all.
+  bool may_split(const CutBrick& brick, std::size_t primitives, std::uint32_t level) const {
+    return primitives > (options_.leaf != 0 ? options_.leaf : block_size) && level < deepest_brick &&
+           can_be_split(brick);
+  }
+  /// Whether children for its cells are worth making. `duplication`: references that a primitive has by the
+  /// splits above.
+  bool splits(const CutBrick& brick, const CellCounts& counts, std::size_t primitives,
+              double duplication) const {
+    const auto occupied = static_cast<std::size_t>(std::popcount(brick.node.occupied));
+    const std::uint64_t references = sum_of(counts);
+    const double more = double(references) / double(primitives);
+    if (references == primitives * occupied) return false;  // every primitive meets every cell
+    if (duplication * more > most_duplication) return false;
+    if (options_.leaf != 0) return true;
+    // A convex cell is pierced in proportion to its area.
+    const auto& [x, y, z] = brick.node.size;
+    const double wx = double(x) * brick.layers[0], wy = double(y) * brick.layers[1],
+                 wz = double(z) * brick.layers[2];
+    const double chance = (double(x) * y + double(y) * z + double(z) * x) / (wx * wy + wy * wz + wz * wx);
+    std::size_t blocks = 0;
+    for (const std::uint32_t n : counts) blocks += blocks_of(n);
+    const double pierced = std::min(1.0, chance * double(occupied));
+    return (node_cost + chance * cost_of_leaves(occupied, blocks, leaf_chance)) *
+               (1 + duplication_cost * (more - 1)) <
+           cost_of_leaves(1, blocks_of(primitives), pierced);
+  }
+
+ private:
+  Resolution first_cell(std::uint64_t block) const {
+    return {static_cast<std::uint32_t>(4 * (block % blocks_[0])),
+            static_cast<std::uint32_t>(4 * (block / blocks_[0] % blocks_[1])),
+            static_cast<std::uint32_t>(4 * (block / blocks_[0] / blocks_[1]))};
+  }
+  Resolution cell_at(std::uint64_t block, unsigned cell) const {
+    const Resolution first = first_cell(block);
+    return {first[0] + cell % 4, first[1] + cell / 4 % 4, first[2] + cell / 16};
   }
 
   /// Grown by a margin: see BrickRay.
-  Box tight_box(std::span<const std::uint32_t> primitives, const Box& cell) const {
-    Box box{cell.high, cell.low};
-    for (const std::uint32_t p : primitives) {
-      const Bounds bounds = scene_.bounds_of(p);
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        box.low[a] = std::min(box.low[a], std::clamp<double>(bounds.low[axis], cell.low[a], cell.high[a]));
-        box.high[a] = std::max(box.high[a], std::clamp<double>(bounds.high[axis], cell.low[a], cell.high[a]));
-      }
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double margin = margin_ + 0x1p-20 * (box.high[a] - box.low[a]);
-      box.low[a] -= margin;
-      box.high[a] += margin;
-    }
-    return box;
-  }
-
-  static Box cell_of(const BrickNode& node, unsigned cell) {
-    const std::array<int, 3> at{static_cast<int>(cell % 4), static_cast<int>(cell / 4 % 4),
-                                static_cast<int>(cell / 16)};
+  Box tight_box(const Bounds& bounds, const Box& cell) const {
     Box box;
-    for (std::size_t a = 0; a < 3; ++a) {
-      box.low[a] = node.plane(static_cast<int>(a), at[a]);
-      box.high[a] = node.plane(static_cast<int>(a), at[a] + 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double low = std::clamp<double>(bounds.low[axis], cell.low[a], cell.high[a]);
+      const double high = std::clamp<double>(bounds.high[axis], cell.low[a], cell.high[a]);
+      const double margin = bricks_.margin + 0x1p-20 * (high - low);
+      box.low[a] = low - margin;
+      box.high[a] = high + margin;
     }
     return box;
-  }
-
-  static double split_duplication(std::size_t count, const std::array<std::uint32_t, 64>& counts) {
-    std::uint64_t references = 0;
-    for (const std::uint32_t n : counts) references += n;
-    return double(references) / double(std::max<std::size_t>(count, 1));
-  }
-
-  bool worth_splitting(const BrickNode& node, const std::array<int, 3>& layers,
-                       const std::array<std::uint32_t, 64>& counts, std::size_t count, double duplication) {
-    if (options_.leaf != 0) return count > options_.leaf;
-    if (double(count) <= block_size) return false;
-    // A convex cell is pierced in proportion to its area.
-    const double x = node.size[0], y = node.size[1], z = node.size[2];
-    const double cell_area = x * y + y * z + z * x;
-    const double wx = x * layers[0], wy = y * layers[1], wz = z * layers[2];
-    const double chance = cell_area / (wx * wy + wy * wz + wz * wx);
-    double cost = 0;
-    for (const std::uint32_t n : counts)
-      if (n != 0) cost += chance * cost_of_leaf(n, leaf_chance);
-    const double pierced = std::min(1.0, chance * std::popcount(node.occupied));
-    return (node_cost + cost) * (1 + duplication_cost * (duplication - 1)) < cost_of_leaf(count, pierced);
   }
 
   /// Whether floats can tell its planes apart.
-  static bool can_be_split(const BrickNode& node, const std::array<int, 3>& layers) {
+  static bool can_be_split(const CutBrick& brick) {
     for (std::size_t a = 0; a < 3; ++a)
-      if (layers[a] > 1 && !(node.size[a] > 0x1p-18 * std::abs(node.plane(static_cast<int>(a), 2))))
+      if (brick.layers[a] > 1 &&
+          !(brick.node.size[a] > 0x1p-18 * std::abs(brick.node.plane(static_cast<int>(a), 2))))
         return false;
     return true;
   }
 
-  void make_leaf(BrickNode& leaf, std::span<const std::uint32_t> primitives) {
-    const std::size_t place = words.size();
-    if (place + (TriangleRows::rows + 1) * primitives.size() > std::numeric_limits<std::uint32_t>::max())
-      throw Error("brick-grid: more than 16 GiB of leaves");
-    const auto triangles = static_cast<std::size_t>(
-        std::ranges::count_if(primitives, [&](std::uint32_t p) { return scene_.is_triangle(p); }));
-    words.resize(place + TriangleRows::rows * triangles + (primitives.size() - triangles));
-    leaf.base = static_cast<std::uint32_t>(place);
-    leaf.triangles = static_cast<std::uint32_t>(triangles);
-    leaf.others = static_cast<std::uint32_t>(primitives.size() - triangles);
-    std::uint32_t column = 0;
-    std::size_t other = place + TriangleRows::rows * triangles;
-    for (const std::uint32_t p : primitives) {
-      if (!scene_.is_triangle(p)) {
-        words[other++] = p;
-        continue;
-      }
-      TriangleRows::put(&words[place], leaf.triangles, column, scene_.triangle(p), p);
-      ++column;
-    }
+  const Scene& scene_;
+  const Bricks& bricks_;
+  BrickOptions options_;
+  Resolution blocks_{};
+};
+
+Box cell_of(const BrickNode& node, unsigned cell) {
+  const std::array<int, 3> at{static_cast<int>(cell % 4), static_cast<int>(cell / 4 % 4),
+                              static_cast<int>(cell / 16)};
+  Box box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.low[a] = node.plane(static_cast<int>(a), at[a]);
+    box.high[a] = node.plane(static_cast<int>(a), at[a] + 1);
+  }
+  return box;
+}
+
+/// Puts each primitive where `places` says for each of its cells, and moves these on.
+void distribute(std::span<const std::uint32_t> primitives, std::span<const std::uint64_t> cells,
+                CellCounts& places, std::uint32_t* lists) {
+  for (std::size_t i = 0; i < primitives.size(); ++i)
+    for (std::uint64_t rest = cells[i]; rest != 0; rest &= rest - 1)
+      lists[places[static_cast<unsigned>(std::countr_zero(rest))]++] = primitives[i];
+}
+
+/// Nodes and leaves, with places of their own. Of leaves first only what is in them: their words are written
+/// when it is known how many there are in all.
+struct Part {
+  struct Leaf {
+    std::uint32_t triangles, others;
+  };
+
+  explicit Part(MemoryMeter& meter)
+      : nodes(MeteredAllocator<BrickNode>(meter)),
+        leaves(MeteredAllocator<Leaf>(meter)),
+        primitives(MeteredAllocator<std::uint32_t>(meter)) {}
+
+  MeteredVector<BrickNode> nodes;
+  MeteredVector<Leaf> leaves;
+  MeteredVector<std::uint32_t> primitives;  // of leaf after leaf
+  std::uint64_t words = 0;
+  std::uint32_t depth = 0;
+
+  void make_leaf(BrickNode& leaf, std::span<const std::uint32_t> triangles,
+                 std::span<const std::uint32_t> others) {
+    leaf.base = static_cast<std::uint32_t>(words);
+    leaf.triangles = static_cast<std::uint32_t>(triangles.size());
+    leaf.others = static_cast<std::uint32_t>(others.size());
+    leaves.push_back({leaf.triangles, leaf.others});
+    primitives.insert(primitives.end(), triangles.begin(), triangles.end());
+    primitives.insert(primitives.end(), others.begin(), others.end());
+    words += TriangleRows::rows * triangles.size() + others.size();
+    if (words > std::numeric_limits<std::uint32_t>::max()) refuse();
   }
 
-  const Scene& scene_;
-  double margin_;
-  BrickOptions options_;
+  [[noreturn]] static void refuse() { throw Error("brick-grid: more than 16 GiB of leaves"); }
+
+  /// Writes the words of all leaves, at their place.
+  void write_leaves(const Scene& scene, std::uint32_t* to) const {
+    const std::uint32_t* next = primitives.data();
+    for (const Leaf& leaf : leaves) {
+      for (std::uint32_t i = 0; i < leaf.triangles; ++i)
+        TriangleRows::put(to, leaf.triangles, i, scene.triangle(next[i]), next[i]);
+      next += leaf.triangles;
+      to = std::copy_n(next, leaf.others, to + TriangleRows::rows * leaf.triangles);
+      next += leaf.others;
+    }
+  }
+};
+
+/// Makes nodes and all that is below them, on one thread.
+class TreeBuilder {
+ public:
+  TreeBuilder(const NodeRules& rules, MemoryMeter& meter)
+      : rules_(rules),
+        stack_(MeteredAllocator<std::uint32_t>(meter)),
+        cells_(MeteredAllocator<std::uint64_t>(meter)) {}
+
+  /// Adds what is below the task's node to `part`.
+  void make(Task& task, Part& part) {
+    const std::size_t count = task.primitives.size();
+    stack_.assign(task.primitives.begin(), task.primitives.end());
+    if (!task.block) {
+      task.made = node_of(0, count, task.cell, task.level, task.duplication, part);
+      return;
+    }
+    CutBrick brick = rules_.block(*task.block);
+    CellCounts counts{};
+    find_cells(brick, gathered(0, count), others(0, count));
+    rules_.count(std::span(cells_).first(count), counts);
+    add_children(brick.node, 0, count, counts, part, [&](std::size_t first, unsigned bit) {
+      return node_of(first, counts[bit], rules_.root_box(*task.block, bit), 0, 1, part);
+    });
+    task.made = brick.node;
+  }
+
+ private:
+  /// The primitives that lie in stack_ from `first` on.
+  std::span<const std::uint32_t> primitives(std::size_t first, std::size_t count) const {
+    return std::span(stack_).subspan(first, count);
+  }
+  GatheredTriangles gathered(std::size_t first, std::size_t count) {
+    const auto all = primitives(first, count);
+    return {rules_.scene(), all.first(rules_.triangles_among(all)), buffer_};
+  }
+  std::span<const std::uint32_t> others(std::size_t first, std::size_t count) const {
+    const auto all = primitives(first, count);
+    return all.subspan(rules_.triangles_among(all));
+  }
+
+  /// A node and what is below it.
+  BrickNode node_of(std::size_t first, std::size_t count, const Box& cell, std::uint32_t level,
+                    double duplication, Part& part) {
+    part.depth = std::max(part.depth, level);
+    const GatheredTriangles triangles = gathered(first, count);
+    CutBrick brick = rules_.cut(rules_.bounds_of(triangles, others(first, count)), cell);
+    find_cells(brick, triangles, others(first, count));
+
+    if (rules_.may_split(brick, count, level)) {
+      CellCounts counts{};
+      rules_.count(std::span(cells_).first(count), counts);
+      const double more = double(sum_of(counts)) / double(count);
+      if (rules_.splits(brick, counts, count, duplication)) {
+        add_children(brick.node, first, count, counts, part, [&](std::size_t child, unsigned bit) {
+          return node_of(child, counts[bit], cell_of(brick.node, bit), level + 1, duplication * more, part);
+        });
+        return brick.node;
+      }
+    }
+    part.make_leaf(brick.node, triangles.all(), others(first, count));
+    return brick.node;
+  }
+
+  /// Of each primitive the cells that it meets, and all of them in the node's mask.
+  void find_cells(CutBrick& brick, const GatheredTriangles& triangles,
+                  std::span<const std::uint32_t> others) {
+    const std::size_t count = triangles.all().size() + others.size();
+    if (cells_.size() < count) cells_.resize(count);
+    const auto cells = std::span(cells_).first(count);
+    rules_.cells_of(brick, triangles, others, cells);
+    for (const std::uint64_t mask : cells) brick.node.occupied |= mask;
+  }
+
+  /// Gives each occupied cell a list of its primitives, at the end of stack_, and a child, child(where the
+  /// list begins, cell).
+  template <class Child>
+  void add_children(BrickNode& node, std::size_t first, std::size_t count, const CellCounts& counts,
+                    Part& part, const Child& child) {
+    const std::size_t lists = stack_.size(), base = part.nodes.size();
+    stack_.resize(lists + sum_of(counts));
+    CellCounts places;
+    std::exclusive_scan(counts.begin(), counts.end(), places.begin(), 0u);
+    distribute(primitives(first, count), cells_, places, stack_.data() + lists);
+    node.base = static_cast<std::uint32_t>(base);
+    part.nodes.resize(base + static_cast<std::size_t>(std::popcount(node.occupied)));
+    std::size_t list = lists;
+    for (std::uint64_t rest = node.occupied; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      const BrickNode made = child(list, bit);
+      part.nodes[node.child(bit)] = made;
+      list += counts[bit];
+    }
+    stack_.resize(lists);
+  }
+
+  const NodeRules& rules_;
+  GatheredTriangles::Buffer buffer_;
   MeteredVector<std::uint32_t> stack_;
-  MeteredVector<std::uint64_t> masks_;
+  MeteredVector<std::uint64_t> cells_;  // by primitive, of the node that is being made
+};
+
+/// Nodes that are too much for one thread.
+class LargeNodes {
+ public:
+  LargeNodes(const NodeRules& rules, MemoryMeter& meter) : part(meter), rules_(rules), meter_(meter) {}
+
+  /// Makes the task's node, on all threads, and adds tasks for its children, whose nodes have their places in
+  /// `part`.
+  void make(Task& task, MeteredVector<Task>& children) {
+    const auto primitives = task.primitives;
+    const std::size_t count = primitives.size(), chunks = (count + chunk_size - 1) / chunk_size;
+    const auto part_of = [&](const auto& all, std::size_t chunk) {
+      return all.subspan(chunk * chunk_size, std::min(chunk_size, count - chunk * chunk_size));
+    };
+    // Calls use(chunk, its triangles, its others) for each chunk of the primitives.
+    const auto for_chunks = [&](const auto& use) {
+      for_ranges(chunks, 1, [&](std::uint64_t begin, std::uint64_t end) {
+        GatheredTriangles::Buffer buffer;
+        for (std::uint64_t chunk = begin; chunk < end; ++chunk) {
+          const auto these = part_of(primitives, chunk);
+          const std::size_t triangles = rules_.triangles_among(these);
+          use(chunk, GatheredTriangles(rules_.scene(), these.first(triangles), buffer),
+              these.subspan(triangles));
+        }
+      });
+    };
+
+    CutBrick brick;
+    if (task.block) {
+      brick = rules_.block(*task.block);
+    } else {
+      part.depth = std::max(part.depth, task.level);
+      MeteredVector<Bounds> bounds(chunks, MeteredAllocator<Bounds>(meter_));
+      for_chunks([&](std::size_t chunk, const auto& triangles, auto others) {
+        bounds[chunk] = rules_.bounds_of(triangles, others);
+      });
+      for (const Bounds& box : bounds) bounds[0].extend(box);
+      brick = rules_.cut(bounds[0], task.cell);
+    }
+
+    MeteredVector<std::uint64_t> all_cells(count, MeteredAllocator<std::uint64_t>(meter_));
+    const std::span<std::uint64_t> cells(all_cells);
+    MeteredVector<CellCounts> places(chunks, MeteredAllocator<CellCounts>(meter_));
+    for_chunks([&](std::size_t chunk, const auto& triangles, auto others) {
+      rules_.cells_of(brick, triangles, others, part_of(cells, chunk));
+      rules_.count(part_of(cells, chunk), places[chunk]);
+    });
+    CellCounts counts{};
+    for (const CellCounts& in_chunk : places)
+      for (std::size_t i = 0; i < 64; ++i) counts[i] += in_chunk[i];
+    for (std::size_t i = 0; i < 64; ++i) brick.node.occupied |= std::uint64_t{counts[i] != 0} << i;
+    if (!task.block && !(rules_.may_split(brick, count, task.level) &&
+                         rules_.splits(brick, counts, count, task.duplication))) {
+      const std::size_t triangles = rules_.triangles_among(primitives);
+      part.make_leaf(brick.node, primitives.first(triangles), primitives.subspan(triangles));
+      task.made = brick.node;
+      return;
+    }
+
+    // Where each chunk's primitives begin in each cell's list.
+    CellCounts place;
+    std::exclusive_scan(counts.begin(), counts.end(), place.begin(), 0u);
+    for (CellCounts& in_chunk : places)
+      for (std::size_t i = 0; i < 64; ++i) place[i] += std::exchange(in_chunk[i], place[i]);
+    const std::uint64_t references = sum_of(counts);
+    std::uint32_t* list = lists_.emplace_back(references, MeteredAllocator<std::uint32_t>(meter_)).data();
+    for_ranges(chunks, 16, [&](std::uint64_t begin, std::uint64_t end) {
+      for (std::uint64_t chunk = begin; chunk < end; ++chunk)
+        distribute(part_of(primitives, chunk), part_of(cells, chunk), places[chunk], list);
+    });
+
+    brick.node.base = static_cast<std::uint32_t>(part.nodes.size());
+    task.made = brick.node;
+    Task child;
+    if (!task.block) {
+      child.level = task.level + 1;
+      child.duplication = task.duplication * double(references) / double(count);
+    }
+    const auto block = task.block;  // `task` may move
+    for (std::uint64_t rest = brick.node.occupied; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      child.primitives = {list, counts[bit]};
+      child.cell = block ? rules_.root_box(*block, bit) : cell_of(brick.node, bit);
+      child.place = brick.node.child(bit);
+      children.push_back(child);
+      list += counts[bit];
+    }
+    part.nodes.resize(part.nodes.size() + static_cast<std::size_t>(std::popcount(brick.node.occupied)));
+  }
+
+  Part part;
+
+ private:
+  static constexpr std::size_t chunk_size = GatheredTriangles::capacity;
+
+  const NodeRules& rules_;
+  MemoryMeter& meter_;
+  std::vector<MeteredVector<std::uint32_t>> lists_;  // that the children's primitives lie in
 };
 
 }  // namespace
 
-void build_bricks(const Scene& scene, const CellLists& lists, const BrickOptions& options, MemoryMeter& meter,
-                  Bricks& bricks) {
-  bricks.roots.assign(lists.cells(), Bricks::empty_cell);
-  // Pieces of the grid with about as many references each, whatever the number of threads.
-  constexpr std::uint64_t piece_size = 4096;
-  std::vector<std::uint64_t> begins{0};
-  for (std::uint64_t cell = 0, references = 0; cell < lists.cells(); ++cell) {
-    references += lists[cell].size();
-    if (references >= piece_size) {
-      begins.push_back(cell + 1);
+void build_bricks(const Scene& scene, const BrickOptions& options, MemoryMeter& meter, Bricks& bricks) {
+  const NodeRules rules(scene, bricks, options);
+  MeteredVector<Task> tasks{MeteredAllocator<Task>(meter)};
+  CellLists lists(meter);
+  lists.build(rules.block_count(), scene.primitive_count(),
+              [&](std::uint32_t p, const auto& add) { rules.for_each_block_near(p, add); });
+  for (std::uint32_t block = 0; block < lists.cells(); ++block)
+    if (!lists[block].empty()) tasks.push_back({.primitives = lists[block], .block = block});
+
+  LargeNodes large(rules, meter);
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    if (tasks[i].is_large()) large.make(tasks[i], tasks);
+
+  // The others in parts of about as many references each, whatever the number of threads.
+  std::vector<std::size_t> begins{0};
+  std::size_t references = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (!tasks[i].is_large()) references += tasks[i].primitives.size();
+    if (references >= part_size || i + 1 == tasks.size()) {
+      begins.push_back(i + 1);
       references = 0;
     }
   }
-  if (begins.back() != lists.cells()) begins.push_back(lists.cells());
-  const std::size_t pieces = begins.size() - 1;
-
-  std::vector<TreeBuilder> built;
-  for (std::size_t i = 0; i < pieces; ++i) built.emplace_back(scene, bricks, options, meter);
-  for_ranges(pieces, 1, [&](std::uint64_t begin, std::uint64_t end) {
-    for (std::uint64_t piece = begin; piece < end; ++piece)
-      for (std::uint64_t cell = begins[piece]; cell < begins[piece + 1]; ++cell) {
-        if (lists[cell].empty()) continue;
-        bricks.roots[cell] = static_cast<std::uint32_t>(built[piece].nodes.size());
-        const auto& n = bricks.cells.n;
-        const std::array<std::uint64_t, 3> at{cell % n[0], cell / n[0] % n[1], cell / n[0] / n[1]};
-        Box box;
-        for (int axis = 0; axis < 3; ++axis) {
-          const auto a = static_cast<std::size_t>(axis);
-          box.low[a] = bricks.cells.plane(axis, double(at[a])) - bricks.space.margin;
-          box.high[a] = bricks.cells.plane(axis, double(at[a]) + 1) + bricks.space.margin;
-        }
-        built[piece].add_tree(lists[cell], box);
-      }
+  std::vector<Part> parts(begins.size() - 1, Part(meter));
+  const auto for_small_tasks = [&](std::size_t part, const auto& use) {
+    for (std::size_t i = begins[part]; i < begins[part + 1]; ++i)
+      if (!tasks[i].is_large()) use(tasks[i]);
+  };
+  for_ranges(parts.size(), 1, [&](std::uint64_t begin, std::uint64_t end) {
+    TreeBuilder builder(rules, meter);
+    for (std::uint64_t p = begin; p < end; ++p)
+      for_small_tasks(p, [&](Task& task) { builder.make(task, parts[p]); });
   });
 
-  // One after the other.
-  std::uint64_t nodes = 0, words = widest_vector;
-  for (const TreeBuilder& tree : built) {
-    nodes += tree.nodes.size();
-    words += tree.words.size();
-    bricks.depth = std::max(bricks.depth, tree.depth);
+  // All together, the large nodes first.
+  std::vector<Place> places{{large.part.nodes.size(), large.part.words}};
+  bricks.depth = large.part.depth;
+  for (const Part& part : parts) {
+    places.push_back({places.back().node + part.nodes.size(), places.back().word + part.words});
+    bricks.depth = std::max(bricks.depth, part.depth);
   }
-  if (std::max(nodes, words) >= std::numeric_limits<std::uint32_t>::max())
-    throw Error("brick-grid: more than 16 GiB of leaves");
-  bricks.nodes.resize(nodes);
-  bricks.words.resize(words);
-  std::uint32_t first_node = 0, first_word = 0;
-  for (std::size_t piece = 0; piece < pieces; ++piece) {
-    TreeBuilder& tree = built[piece];
-    for (std::uint64_t cell = begins[piece]; cell < begins[piece + 1]; ++cell)
-      if (bricks.roots[cell] != Bricks::empty_cell) bricks.roots[cell] += first_node;
-    for (BrickNode& node : tree.nodes) node.base += node.is_leaf() ? first_word : first_node;
-    std::ranges::copy(tree.nodes, bricks.nodes.begin() + first_node);
-    std::ranges::copy(tree.words, bricks.words.begin() + first_word);
-    first_node += static_cast<std::uint32_t>(tree.nodes.size());
-    first_word += static_cast<std::uint32_t>(tree.words.size());
-    MeteredVector<BrickNode>(tree.nodes.get_allocator()).swap(tree.nodes);
-    MeteredVector<std::uint32_t>(tree.words.get_allocator()).swap(tree.words);
+  const Place end = places.back();
+  if (std::max(end.node, end.word + widest_vector) >= std::numeric_limits<std::uint32_t>::max())
+    Part::refuse();
+  bricks.nodes.resize(end.node);
+  bricks.words.resize(end.word + widest_vector);
+  std::fill_n(bricks.words.end() - widest_vector, widest_vector, 0u);
+  large.part.write_leaves(scene, bricks.words.data());
+  for_ranges(parts.size(), 1, [&](std::uint64_t begin, std::uint64_t last) {
+    for (std::uint64_t p = begin; p < last; ++p) {
+      const Part part = std::move(parts[p]);
+      const auto move = [&](BrickNode& node) {
+        node.base += static_cast<std::uint32_t>(node.is_leaf() ? places[p].word : places[p].node);
+      };
+      for_small_tasks(p, [&](Task& task) { move(task.made); });
+      BrickNode* to = bricks.nodes.data() + places[p].node;
+      for (const BrickNode& node : part.nodes) move(*to++ = node);
+      part.write_leaves(scene, bricks.words.data() + places[p].word);
+    }
+  });
+  bricks.roots.assign(cell_count(bricks.cells.n), Bricks::empty_cell);
+  for (const Task& task : tasks) {
+    if (!task.block) {
+      bricks.nodes[task.place] = task.made;
+      continue;
+    }
+    for (std::uint64_t rest = task.made.occupied; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      bricks.roots[rules.root_cell(*task.block, bit)] = task.made.child(bit);
+    }
   }
 }
 

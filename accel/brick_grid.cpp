@@ -4,13 +4,16 @@
 
 #include "accel/brick_build.h"
 #include "accel/brick_kernels.h"
-#include "accel/cell_lists.h"
 #include "accel/cell_overlap.h"
 #include "scenes/base/error.h"
 #include "scenes/geometry/rounding.h"
 
 namespace raymeter {
 namespace {
+
+const BrickOverlap& overlap_for(std::string_view isa) {
+  return *std::ranges::find(brick_overlaps(), isa, &BrickOverlap::isa);
+}
 
 class BrickGrid final : public Structure {
  public:
@@ -30,13 +33,7 @@ class BrickGrid final : public Structure {
     const auto limit = std::max<std::uint64_t>(std::uint64_t{1} << 22, 8 * scene_.primitive_count());
     bricks_.cells = registrable_grid(scene_, bricks_.space, limit, chosen);
     bricks_.grid = FloatGrid(bricks_.cells);
-    {
-      CellLists lists(meter_);
-      lists.build(cell_count(chosen.n), scene_.primitive_count(), [&](std::uint32_t p, const auto& add) {
-        for_each_cell_of(scene_, p, bricks_.cells, bricks_.space.margin, Fit::exact, add);
-      });
-      build_bricks(scene_, lists, {leaf, kernels.sums_within}, meter_, bricks_);
-    }
+    build_bricks(scene_, {leaf, &overlap_for(kernels.isa)}, meter_, bricks_);
 
     stats_.isa = kernels.isa;
     stats_.note = chosen.note;

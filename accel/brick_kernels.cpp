@@ -356,25 +356,11 @@ void count_any(const Bricks& bricks, const Scene& scene, const BatchView& batch,
   }
 }
 
-std::uint32_t sums_within(const std::array<float, 4>& a, const std::array<float, 4>& b, float low,
-                          float high) {
-  const Floats d;
-  const FloatVector from = hn::Set(d, low), to = hn::Set(d, high), columns = hn::LoadDup128(d, a.data());
-  alignas(64) std::array<float, 16> rows;
-  for (std::size_t i = 0; i < 16; ++i) rows[i] = b[i / 4];
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < 16; i += lanes) {
-    const FloatVector sum = hn::Add(columns, hn::Load(d, &rows[i]));
-    bits |= bits_of(hn::And(hn::Ge(sum, from), hn::Le(sum, to))) << i;
-  }
-  return static_cast<std::uint32_t>(bits);
-}
-
 }  // namespace
 
 const BrickKernels& target_kernels() {
   constexpr const char* isa = HWY_TARGET == HWY_AVX3 ? "avx512" : HWY_TARGET == HWY_AVX2 ? "avx2" : "sse4.2";
-  static constexpr BrickKernels kernels{isa, trace_closest, trace_any, count_closest, count_any, sums_within};
+  static constexpr BrickKernels kernels{isa, trace_closest, trace_any, count_closest, count_any};
   return kernels;
 }
 

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "accel/brick_overlap.h"
 #include "accel/bricks.h"
 #include "accel/structure.h"
 #include "scenes/scene.h"
@@ -20,7 +19,6 @@ struct BrickKernels {
                         std::span<RayCounters>);
   void (*count_any)(const Bricks&, const Scene&, const BatchView&, std::span<std::uint8_t>,
                     std::span<RayCounters>);
-  BrickOverlap::SumsWithin sums_within;
 };
 
 /// Those that this CPU can run, the widest first.

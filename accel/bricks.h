@@ -66,14 +66,14 @@ struct Bricks {
   explicit Bricks(MemoryMeter& meter)
       : roots(MeteredAllocator<std::uint32_t>(meter)),
         nodes(MeteredAllocator<BrickNode>(meter)),
-        words(MeteredAllocator<std::uint32_t>(meter)) {}
+        words(RawMeteredAllocator<std::uint32_t>(meter)) {}
 
   WalkSpace space;
   CellGrid cells;
   FloatGrid grid;                      ///< the same
   MeteredVector<std::uint32_t> roots;  ///< by cell: its root among the nodes, or empty_cell
   MeteredVector<BrickNode> nodes;
-  MeteredVector<std::uint32_t> words;
+  RawMeteredVector<std::uint32_t> words;
   double margin = 0;        ///< what nodes' boxes and cells are grown by, at least
   std::uint32_t depth = 0;  ///< levels of bricks below a root, at most
 };

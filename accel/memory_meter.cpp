@@ -1,6 +1,9 @@
 #include "accel/memory_meter.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+
+#include <memory>
 
 namespace raymeter {
 
@@ -14,6 +17,14 @@ void MemoryMeter::add(std::uint64_t bytes) {
   std::uint64_t peak = peak_;
   while (now > peak && !peak_.compare_exchange_weak(peak, now)) {
   }
+}
+
+void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  constexpr std::size_t page = 4096, huge = 2 << 20;
+  if (bytes >= 2 * huge && std::align(page, page, memory, bytes) != nullptr)
+    madvise(memory, bytes / page * page, MADV_HUGEPAGE);  // it may refuse
+#endif
 }
 
 }  // namespace raymeter

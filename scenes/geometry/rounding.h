@@ -24,11 +24,20 @@ inline float rounded(double t) {
   return static_cast<float>(t);
 }
 
+/// The next float, of a finite one; denormals are skipped.
+inline float next_above(float x) {
+  if (flushed(x) == 0) return x < 0 ? 0.0f : FLT_MIN;
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  return flushed(std::bit_cast<float>(x > 0 ? bits + 1 : bits - 1));
+}
+inline float next_below(float x) {
+  return -next_above(-x);
+}
+
 /// The greatest float that is not above x and not denormal.
 inline float float_below(double x) {
   const float nearest = rounded(x);
-  if (!(nearest > x)) return nearest;
-  return nearest == 0 ? -FLT_MIN : std::nextafter(nearest, -INFINITY);
+  return nearest > x ? next_below(nearest) : nearest;
 }
 
 /// `rounded` of a real number that is known by comparison only: `compare(m, e)` is the sign of the number
