@@ -22,7 +22,7 @@ namespace {
 
 /// The expected cost, in cycles, of stepping through a node, of a leaf and of a block of triangles in it:
 /// fitted on a prototype.
-constexpr double node_cost = 55, leaf_cost = 20, block_cost = 34;
+constexpr double node_cost = 55, leaf_cost = 20, block_cost = 26;
 /// A block is as many triangles as the widest vector has lanes.
 constexpr std::size_t block_size = widest_vector;
 /// How often a ray that meets a leaf's box goes on to its triangles: it must pierce an occupied cell.
@@ -176,6 +176,18 @@ class NodeRules {
     return box;
   }
 
+  RootBox root_box_of(std::uint64_t block, unsigned cell, const BrickNode& root) const {
+    const auto at = cell_at(block, cell);
+    RootBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double corner = bricks_.cells.plane(axis, at[a]), margin = bricks_.space.margin;
+      box.set(axis, (root.plane(axis, 0) - margin - corner) * bricks_.cells.inverse_size[axis],
+              (root.plane(axis, 4) + margin - corner) * bricks_.cells.inverse_size[axis]);
+    }
+    return box;
+  }
+
   /// Triangles come before all others.
   std::size_t triangles_among(std::span<const std::uint32_t> primitives) const {
     if (primitives.empty() || scene_.is_triangle(primitives.back())) return primitives.size();
@@ -278,7 +290,7 @@ class NodeRules {
   static bool can_be_split(const CutBrick& brick) {
     for (std::size_t a = 0; a < 3; ++a)
       if (brick.layers[a] > 1 &&
-          !(brick.node.size[a] > 0x1p-18 * std::abs(brick.node.plane(static_cast<int>(a), 2))))
+          !(brick.node.size[a] > 0x1p-21 * std::abs(brick.node.plane(static_cast<int>(a), 2))))
         return false;
     return true;
   }
@@ -318,23 +330,33 @@ struct Part {
   explicit Part(MemoryMeter& meter)
       : nodes(MeteredAllocator<BrickNode>(meter)),
         leaves(MeteredAllocator<Leaf>(meter)),
+        masks(MeteredAllocator<std::uint64_t>(meter)),
         primitives(MeteredAllocator<std::uint32_t>(meter)) {}
 
   MeteredVector<BrickNode> nodes;
   MeteredVector<Leaf> leaves;
+  MeteredVector<std::uint64_t> masks;       // of leaf after leaf, as LeafWords has them
   MeteredVector<std::uint32_t> primitives;  // of leaf after leaf
   std::uint64_t words = 0;
   std::uint32_t depth = 0;
 
+  /// Of triangles in the order in which they are to be tested; `cells`: of each.
   void make_leaf(BrickNode& leaf, std::span<const std::uint32_t> triangles,
-                 std::span<const std::uint32_t> others) {
+                 std::span<const std::uint64_t> cells, std::span<const std::uint32_t> others) {
     leaf.base = static_cast<std::uint32_t>(words);
     leaf.triangles = static_cast<std::uint32_t>(triangles.size());
     leaf.others = static_cast<std::uint32_t>(others.size());
     leaves.push_back({leaf.triangles, leaf.others});
     primitives.insert(primitives.end(), triangles.begin(), triangles.end());
     primitives.insert(primitives.end(), others.begin(), others.end());
-    words += TriangleRows::rows * triangles.size() + others.size();
+    if (LeafWords::has_masks(leaf.triangles))
+      for (std::size_t first = 0; first < triangles.size(); first += LeafWords::block) {
+        std::uint64_t mask = 0;
+        for (std::size_t i = first; i < std::min(triangles.size(), first + LeafWords::block); ++i)
+          mask |= cells[i];
+        masks.push_back(mask);
+      }
+    words += LeafWords::count(leaf.triangles) + others.size();
     if (words > std::numeric_limits<std::uint32_t>::max()) refuse();
   }
 
@@ -343,14 +365,53 @@ struct Part {
   /// Writes the words of all leaves, at their place.
   void write_leaves(const Scene& scene, std::uint32_t* to) const {
     const std::uint32_t* next = primitives.data();
+    const std::uint64_t* mask = masks.data();
     for (const Leaf& leaf : leaves) {
       for (std::uint32_t i = 0; i < leaf.triangles; ++i)
         TriangleRows::put(to, leaf.triangles, i, scene.triangle(next[i]), next[i]);
       next += leaf.triangles;
-      to = std::copy_n(next, leaf.others, to + TriangleRows::rows * leaf.triangles);
+      to += TriangleRows::rows * leaf.triangles;
+      for (std::size_t i = 0; i < LeafWords::masks(leaf.triangles); ++i, ++mask) {
+        *to++ = static_cast<std::uint32_t>(*mask);
+        *to++ = static_cast<std::uint32_t>(*mask >> 32u);
+      }
+      to = std::copy_n(next, leaf.others, to);
       next += leaf.others;
     }
   }
+};
+
+/// Sorts a leaf's triangles so that neighbours in the array are neighbours in space.
+class LeafOrder {
+ public:
+  /// By the first of the cells that they meet, along a Z-order curve (Morton 1966).
+  void sort(std::span<std::uint32_t> triangles, std::span<std::uint64_t> cells) {
+    if (!LeafWords::has_masks(triangles.size())) return;
+    entries_.clear();
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const auto cell = static_cast<unsigned>(std::countr_zero(cells[i] | std::uint64_t{1} << 63u));
+      entries_.push_back({z_order(cell), triangles[i], cells[i]});
+    }
+    std::ranges::stable_sort(entries_, {}, &Entry::key);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      triangles[i] = entries_[i].triangle;
+      cells[i] = entries_[i].cells;
+    }
+  }
+
+ private:
+  struct Entry {
+    unsigned key;
+    std::uint32_t triangle;
+    std::uint64_t cells;
+  };
+  static unsigned z_order(unsigned cell) {
+    unsigned order = 0;
+    for (unsigned axis = 0; axis < 3; ++axis)
+      order |= (cell >> (2 * axis) & 1u) << axis | (cell >> (2 * axis + 1) & 1u) << (axis + 3);
+    return order;
+  }
+  std::vector<Entry> entries_;
 };
 
 /// Makes nodes and all that is below them, on one thread.
@@ -412,7 +473,10 @@ class TreeBuilder {
         return brick.node;
       }
     }
-    part.make_leaf(brick.node, triangles.all(), others(first, count));
+    const std::size_t among = triangles.all().size();
+    order_.sort(std::span(stack_).subspan(first, among), std::span(cells_).first(among));
+    part.make_leaf(brick.node, primitives(first, among), std::span(cells_).first(among),
+                   others(first, count));
     return brick.node;
   }
 
@@ -450,6 +514,7 @@ class TreeBuilder {
 
   const NodeRules& rules_;
   GatheredTriangles::Buffer buffer_;
+  LeafOrder order_;
   MeteredVector<std::uint32_t> stack_;
   MeteredVector<std::uint64_t> cells_;  // by primitive, of the node that is being made
 };
@@ -507,7 +572,10 @@ class LargeNodes {
     if (!task.block && !(rules_.may_split(brick, count, task.level) &&
                          rules_.splits(brick, counts, count, task.duplication))) {
       const std::size_t triangles = rules_.triangles_among(primitives);
-      part.make_leaf(brick.node, primitives.first(triangles), primitives.subspan(triangles));
+      std::vector<std::uint32_t> ordered(primitives.begin(), primitives.end());
+      LeafOrder().sort(std::span(ordered).first(triangles), cells.first(triangles));
+      part.make_leaf(brick.node, std::span(ordered).first(triangles), cells.first(triangles),
+                     primitives.subspan(triangles));
       task.made = brick.node;
       return;
     }
@@ -616,14 +684,17 @@ void build_bricks(const Scene& scene, const BrickOptions& options, MemoryMeter& 
     }
   });
   bricks.roots.assign(cell_count(bricks.cells.n), Bricks::empty_cell);
+  bricks.root_boxes.assign(bricks.roots.size(), {});
+  for (const Task& task : tasks)
+    if (!task.block) bricks.nodes[task.place] = task.made;
   for (const Task& task : tasks) {
-    if (!task.block) {
-      bricks.nodes[task.place] = task.made;
-      continue;
-    }
+    if (!task.block) continue;
     for (std::uint64_t rest = task.made.occupied; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-      bricks.roots[rules.root_cell(*task.block, bit)] = task.made.child(bit);
+      const std::uint64_t cell = rules.root_cell(*task.block, bit);
+      const std::uint32_t root = task.made.child(bit);
+      bricks.roots[cell] = root;
+      bricks.root_boxes[cell] = rules.root_box_of(*task.block, bit, bricks.nodes[root]);
     }
   }
 }

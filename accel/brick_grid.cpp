@@ -28,7 +28,7 @@ class BrickGrid final : public Structure {
       if (std::max(-bricks_.space.low[axis], bricks_.space.high[axis]) > 0x1p126)
         throw Error("brick-grid: coordinates beyond 8.5e+37 would leave the range of floats");
     auto chosen = choose_resolution(top, shape_sizes(scene_),
-                                    ResolutionLimits::within(input.memory_limit, 4 * bricks_.space.margin));
+                                    ResolutionLimits::within(input.memory_limit, 32 * bricks_.space.margin));
     // Coarser than other grids where primitives are large: a reference here is 40 bytes and no number.
     const auto limit = std::max<std::uint64_t>(std::uint64_t{1} << 22, 8 * scene_.primitive_count());
     bricks_.cells = registrable_grid(scene_, bricks_.space, limit, chosen);

@@ -23,16 +23,25 @@ HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
 namespace {
 
-/// A leaf, and how far from the ray's origin some point of each of its primitives may be (1-norm).
+/// A leaf that a ray meets, and how far from its origin some point of each primitive may be (1-norm).
 struct Leaf {
   TriangleRows triangles;
   std::span<const std::uint32_t> others;
   float reach = 0;
+  std::uint64_t pierced = 0;  ///< cells
+
+  /// Whether the block of triangles that begins with `first` may be hit.
+  bool has(std::uint32_t first) const {
+    if (!LeafWords::has_masks(triangles.count)) return true;
+    const std::uint32_t* const mask =
+        triangles.words + TriangleRows::rows * triangles.count + 2 * (first / LeafWords::block);
+    return (pierced & (mask[0] | std::uint64_t{mask[1]} << 32u)) != 0;
+  }
 };
 
-HWY_INLINE Leaf leaf_of(const Bricks& bricks, const BrickNode& node, float reach) {
+HWY_INLINE Leaf leaf_of(const Bricks& bricks, const BrickNode& node, float reach, std::uint64_t pierced) {
   const std::uint32_t* const words = bricks.words.data() + node.base;
-  return {{words, node.triangles}, {words + TriangleRows::rows * node.triangles, node.others}, reach};
+  return {{words, node.triangles}, {words + LeafWords::count(node.triangles), node.others}, reach, pierced};
 }
 
 template <class Probe>
@@ -55,6 +64,7 @@ class ClosestHit {
 
   HWY_INLINE void visit(const Leaf& leaf) {
     for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
+      if (!leaf.has(first)) continue;
       count_block(leaf.triangles, first, probe_);
       const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
       if (test.candidates == 0) continue;
@@ -120,6 +130,7 @@ class AnyHit {
 
   HWY_INLINE void visit(const Leaf& leaf) {
     for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
+      if (!leaf.has(first)) continue;
       count_block(leaf.triangles, first, probe_);
       const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
       if (test.candidates == 0) continue;
@@ -191,7 +202,7 @@ class TreeWalk {
     const std::uint64_t cells = ray.pierced(node, tnear, query.tmax());
     if (cells != 0 && node.is_leaf()) {
       probe.cell_step(false);
-      query.visit(leaf_of(bricks, node, reach_));
+      query.visit(leaf_of(bricks, node, reach_, ray.mirrored(cells)));
       if (query.done()) return false;
     } else {
       probe.inner_step();
@@ -236,7 +247,9 @@ class MovedQuery {
   MovedQuery(Query& query, const BrickRay& ray, double by)
       : query_(query), by_(by * ray.scale), moved_(2 * (1 + 0x1p-20f) * static_cast<float>(by_)) {}
   float tmax() const { return -float_below(by_ - double(query_.tmax())) * (1 + 0x1p-20f); }
-  void visit(const Leaf& leaf) { query_.visit({leaf.triangles, leaf.others, leaf.reach + moved_}); }
+  void visit(const Leaf& leaf) {
+    query_.visit({leaf.triangles, leaf.others, leaf.reach + moved_, leaf.pierced});
+  }
   bool done() const { return query_.done(); }
 
  private:

@@ -30,6 +30,7 @@ class BrickWalk {
   /// At most as many rays as there are lanes. They must outlive this.
   HWY_INLINE BrickWalk(const Bricks& bricks, std::span<const Ray> rays)
       : roots_(reinterpret_cast<const std::int32_t*>(bricks.roots.data())),
+        boxes_(reinterpret_cast<const std::int32_t*>(bricks.root_boxes.data())),
         cell_reach_(bricks.grid.cell_reach) {
     const Floats d;
     const Integers di;
@@ -78,24 +79,24 @@ class BrickWalk {
       enter = hn::Max(enter, hn::Min(first_[a], last));
       leave = hn::Min(leave, hn::Max(first_[a], last));
     }
-    cell_ = hn::Zero(di);
+    place_.cell = hn::Zero(di);
     for (std::size_t a = 0; a < 3; ++a) {
       const auto is_up = hn::Gt(inverse[a], zero);
       const FloatVector place =
           hn::Mul(hn::MulSub(along[a], enter, from_origin[a]), hn::Set(d, grid.inverse_size[a]));
       const FloatVector layer = hn::Floor(hn::Min(hn::Max(place, zero), hn::Set(d, grid.layers[a] - 1)));
       const IntegerVector stride = hn::Set(di, grid.stride[a]);
-      cell_ = hn::Add(cell_, hn::Mul(hn::ConvertTo(di, layer), stride));
+      place_.cell = hn::Add(place_.cell, hn::Mul(hn::ConvertTo(di, layer), stride));
       // The planes ahead. The last of them is crossed at `leave`, or after.
-      index_[a] = hn::IfThenElse(is_up, hn::Add(layer, one), layer);
+      place_.index[a] = hn::IfThenElse(is_up, hn::Add(layer, one), layer);
       step_[a] = hn::IfThenElse(is_up, one, hn::Neg(one));
       stride_[a] = hn::IfThenElse(hn::RebindMask(di, is_up), stride, hn::Neg(stride));
     }
 
     taken_ = bits_of(taken);
     end_ = leave;
-    walking_ = hn::And(taken, hn::Le(enter, leave));
-    root_ = hn::GatherIndex(di, roots_, cell_);
+    place_.walking = hn::And(taken, hn::Le(enter, leave));
+    place_.root = hn::GatherIndex(di, roots_, place_.cell);
 
     alignas(64) std::array<std::array<float, lanes>, 7> out;
     alignas(64) std::array<std::int32_t, lanes> octants;
@@ -125,21 +126,33 @@ class BrickWalk {
   template <class Probe>
   HWY_INLINE std::uint64_t find_roots(Probe& probe) {
     const Integers di;
-    while (true) {
-      const auto searching = hn::And(walking_, hn::RebindMask(Floats(), hn::Eq(root_, hn::Set(di, no_root))));
-      const std::uint64_t rays = bits_of(searching);
-      if (rays == 0) break;
-      if constexpr (!std::is_same_v<Probe, NoProbe>)
-        for (int i = std::popcount(rays); i > 0; --i) probe.cell_step(true);
-      advance(searching);
-    }
-    hn::Store(root_, di, root_of_.data());
-    // No point of the cell is farther from the origin than where the ray leaves it, and a cell's size.
     const Floats d;
-    const FloatVector leave = hn::Min(hn::Min(next(0), next(1)), next(2));
+    Place place = place_;  // in registers
+    auto found = hn::FirstN(d, 0);
+    while (true) {
+      const auto without = hn::RebindMask(d, hn::Eq(place.root, hn::Set(di, no_root)));
+      auto on = hn::And(place.walking, without);
+      if (!hn::AllFalse(d, on)) {
+        if constexpr (!std::is_same_v<Probe, NoProbe>)
+          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.cell_step(true);
+      } else {
+        // All are at roots. Those that pass by a root's box go on, too.
+        const auto arrived = hn::AndNot(found, place.walking);
+        if (hn::AllFalse(d, arrived)) break;
+        on = hn::AndNot(meets_root(place), arrived);
+        found = hn::AndNot(on, place.walking);
+        if constexpr (!std::is_same_v<Probe, NoProbe>)
+          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.inner_step();
+      }
+      advance(place, on);
+    }
+    place_ = place;
+    hn::Store(place.root, di, root_of_.data());
+    // No point of the cell is farther from the origin than where the ray leaves it, and a cell's size.
+    const FloatVector leave = hn::Min(hn::Min(next(place, 0), next(place, 1)), next(place, 2));
     hn::Store(hn::MulAdd(leave, hn::Set(d, 2 * (1 + 0x1p-15f)), hn::Set(d, cell_reach_)), d,
               reach_of_.data());
-    return bits_of(walking_);
+    return bits_of(place.walking);
   }
   /// Of the present cell.
   std::uint32_t root(std::size_t lane) const { return static_cast<std::uint32_t>(root_of_[lane]); }
@@ -149,39 +162,70 @@ class BrickWalk {
   /// Takes all rays that are in on to the next cell, or out, if nothing matters there beyond tmax.
   HWY_INLINE void leave_roots(const std::array<float, lanes>& tmax) {
     end_ = hn::Min(end_, hn::Load(Floats(), tmax.data()));
-    advance(walking_);
+    advance(place_, place_.walking);
   }
 
  private:
+  struct Place {
+    FloatVector index[3];  // of the planes ahead
+    IntegerVector cell, root;
+    hn::Mask<Floats> walking;  // who is in
+  };
   static constexpr std::int32_t no_root = -1;
   static_assert(static_cast<std::uint32_t>(no_root) == Bricks::empty_cell);
 
-  /// The t at which the plane ahead is crossed.
-  HWY_INLINE FloatVector next(std::size_t a) const { return hn::MulAdd(index_[a], delta_[a], first_[a]); }
-
-  HWY_INLINE void advance(hn::Mask<Floats> which) {
+  /// Whether the box of the present cell's root lies on the way.
+  HWY_INLINE hn::Mask<Floats> meets_root(const Place& place) const {
     const Floats d;
     const Integers di;
-    const FloatVector nearest = hn::Min(hn::Min(next(0), next(1)), next(2));
-    const auto inside = hn::Lt(nearest, end_);
-    walking_ = hn::AndNot(hn::AndNot(inside, which), walking_);
-    const auto moves = hn::And(which, inside);
+    const IntegerVector boxes = hn::GatherIndex(di, boxes_, place.cell);
+    const auto part = [&](int shift) {
+      return hn::ConvertTo(d, hn::And(hn::ShiftRightSame(boxes, shift), hn::Set(di, 31)));
+    };
+    FloatVector enter = hn::Load(d, tnear_.data()), leave = end_;
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto crosses = hn::And(moves, hn::Le(next(a), nearest));
-      index_[a] = hn::Add(index_[a], hn::IfThenElseZero(crosses, step_[a]));
-      cell_ = hn::Add(cell_, hn::IfThenElseZero(hn::RebindMask(di, crosses), stride_[a]));
+      const int shift = static_cast<int>(10 * a);
+      // In cells, from plane 0: the cell begins at the plane ahead, or before it.
+      const FloatVector cell = hn::Sub(place.index[a], hn::Max(step_[a], hn::Zero(d)));
+      const FloatVector unit = hn::Set(d, 1.0f / RootBox::parts);
+      const FloatVector low = hn::MulAdd(part(shift), unit, hn::Sub(cell, unit)),
+                        high = hn::MulAdd(part(shift + 5), unit, cell);
+      const FloatVector at_low = hn::MulAdd(low, delta_[a], first_[a]),
+                        at_high = hn::MulAdd(high, delta_[a], first_[a]);
+      enter = hn::Max(enter, hn::Min(at_low, at_high));
+      leave = hn::Min(leave, hn::Max(at_low, at_high));
     }
-    root_ = hn::GatherIndex(di, roots_, cell_);
+    return hn::Le(enter, leave);
   }
 
-  const std::int32_t* roots_;
+  /// The t at which the plane ahead is crossed.
+  HWY_INLINE FloatVector next(const Place& place, std::size_t a) const {
+    return hn::MulAdd(place.index[a], delta_[a], first_[a]);
+  }
+
+  HWY_INLINE void advance(Place& place, hn::Mask<Floats> which) const {
+    const Floats d;
+    const Integers di;
+    const FloatVector ahead[3] = {next(place, 0), next(place, 1), next(place, 2)};
+    const FloatVector nearest = hn::Min(hn::Min(ahead[0], ahead[1]), ahead[2]);
+    const auto inside = hn::Lt(nearest, end_);
+    place.walking = hn::AndNot(hn::AndNot(inside, which), place.walking);
+    const auto moves = hn::And(which, inside);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto crosses = hn::And(moves, hn::Le(ahead[a], nearest));
+      place.index[a] = hn::Add(place.index[a], hn::IfThenElseZero(crosses, step_[a]));
+      place.cell = hn::Add(place.cell, hn::IfThenElseZero(hn::RebindMask(di, crosses), stride_[a]));
+    }
+    place.root = hn::GatherIndex(di, roots_, place.cell);
+  }
+
+  const std::int32_t *roots_, *boxes_;
   float cell_reach_;
-  hn::Mask<Floats> walking_;
-  FloatVector index_[3], step_[3];   // of the planes ahead
+  Place place_;
+  FloatVector step_[3];              // from plane to plane
   FloatVector first_[3], delta_[3];  // t at plane 0, and from plane to plane
   FloatVector end_;                  // t beyond which no cell matters
   IntegerVector stride_[3];          // from cell to cell across the planes ahead
-  IntegerVector cell_, root_;
   alignas(64) std::array<std::int32_t, lanes> root_of_;
   alignas(64) std::array<float, lanes> tnear_, reach_of_;
   std::array<BrickRay, lanes> rays_;

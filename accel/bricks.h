@@ -1,6 +1,8 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -41,9 +43,36 @@ struct alignas(64) BrickNode {
 };
 static_assert(sizeof(BrickNode) == 64);
 
-/// A leaf's words: the rows of its triangles, then the indices of the others.
+/// A leaf's words: the rows of its triangles; where these are more than a block, for each block the cells
+/// that its triangles meet, 64 bits in two words; then the indices of the others.
+struct LeafWords {
+  static constexpr std::size_t block = 16;  ///< triangles
+  static bool has_masks(std::size_t triangles) { return triangles > block; }
+  static std::size_t masks(std::size_t triangles) {
+    return has_masks(triangles) ? (triangles + block - 1) / block : 0;
+  }
+  /// Without the others.
+  static std::size_t count(std::size_t triangles) {
+    return TriangleRows::rows * triangles + 2 * masks(triangles);
+  }
+};
 /// The most floats that a kernel reads at once: so many words follow the last leaf.
 inline constexpr std::size_t widest_vector = 16;
+
+/// The box of a root, grown by what a walk may be off, in parts of its cell: in five bits each, for x, y and
+/// z, where it begins, less than one part before the cell at most, and where it ends.
+struct RootBox {
+  static constexpr int parts = 28;  ///< of a cell
+  std::uint32_t bits = 0;
+
+  /// `low` and `high`: in cells, from the cell's corner.
+  void set(int axis, double low, double high) {
+    const auto part = [](double x) {
+      return static_cast<std::uint32_t>(std::clamp(std::floor(x * parts), -1.0, double(parts)) + 1);
+    };
+    bits |= part(low) << (10 * axis) | part(high) << (10 * axis + 5);
+  }
+};
 
 /// A grid in floats, as BrickWalk needs it.
 struct FloatGrid {
@@ -65,6 +94,7 @@ struct Bricks {
 
   explicit Bricks(MemoryMeter& meter)
       : roots(MeteredAllocator<std::uint32_t>(meter)),
+        root_boxes(MeteredAllocator<RootBox>(meter)),
         nodes(MeteredAllocator<BrickNode>(meter)),
         words(RawMeteredAllocator<std::uint32_t>(meter)) {}
 
@@ -72,6 +102,7 @@ struct Bricks {
   CellGrid cells;
   FloatGrid grid;                      ///< the same
   MeteredVector<std::uint32_t> roots;  ///< by cell: its root among the nodes, or empty_cell
+  MeteredVector<RootBox> root_boxes;   ///< by cell, of those that have one
   MeteredVector<BrickNode> nodes;
   RawMeteredVector<std::uint32_t> words;
   double margin = 0;        ///< what nodes' boxes and cells are grown by, at least
