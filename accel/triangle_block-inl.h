@@ -25,6 +25,9 @@ HWY_INLINE FloatVec3 cross_of(const FloatVec3& a, const FloatVec3& b) {
 HWY_INLINE FloatVector dot_of(const FloatVec3& a, const FloatVec3& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
+HWY_INLINE FloatVector norm_of(const FloatVec3& v) {
+  return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
+}
 HWY_INLINE FloatVec3 minus(const FloatVec3& a, const FloatVec3& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
@@ -48,7 +51,7 @@ struct BlockTest {
   std::uint64_t inside = 0;      ///< it certainly does, and not through its edges
   FloatVector det, height;       ///< t is height / det
   FloatVector edge;              ///< in TriangleRows::edge_unit
-  float reach;
+  FloatVec3 from_corner;         ///< the ray's origin, from the first corner
 
   struct Hits {
     std::uint64_t possible;  ///< of the candidates: t may lie in the interval
@@ -57,11 +60,12 @@ struct BlockTest {
   /// What t says of the candidates, with the bounds of filter.h for det and height.
   HWY_INLINE Hits within(const FilterInterval& interval) const {
     const Floats d;
-    // 2^-20 edge^2, and that times (reach + edge); infinite where something may have overflowed.
+    // 2^-20 edge^2, and that times the distance; infinite where something may have overflowed.
     constexpr float unit = TriangleRows::edge_unit;
     const FloatVector edges = hn::Mul(edge, edge);
     const FloatVector det_error = hn::Mul(edges, hn::Set(d, 0x1p-20f / (unit * unit)));
-    const FloatVector distance = hn::MulAdd(edge, hn::Set(d, 1 / unit), hn::Set(d, reach));
+    // A bound by the cell would do, but not tell that a ray leaves the triangle that it starts on.
+    const FloatVector distance = hn::Add(norm_of(from_corner), hn::Set(d, filter::tiny));
     const FloatVector height_error = hn::Mul(hn::Mul(edges, distance), hn::Set(d, 0x1p-20f / (unit * unit)));
     const FloatVector positive = hn::Abs(det), along = hn::Xor(height, hn::And(det, hn::SignBit(d)));
     const FloatVector least_det = hn::Sub(positive, det_error), greatest_det = hn::Add(positive, det_error);
@@ -122,7 +126,7 @@ HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, s
           det,
           dot_of(e2, q),
           edge,
-          reach};
+          s};
 }
 
 /// Where the ray's line meets the plane of a triangle, in double: t = height / det within the errors, det >
