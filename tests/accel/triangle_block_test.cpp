@@ -22,9 +22,10 @@
 #define RAYMETER_TRIANGLE_BLOCK_TEST
 namespace raymeter {
 
-/// A lane of BlockTest.
+/// A lane of BlockTest, and of PlaneHit what holds where it is known.
 struct TriangleClaim {
-  bool candidate, inside, certain;
+  bool candidate, inside, certain, known;
+  double height, det, height_error, det_error;
 };
 struct BlockTester {
   const char* isa;
@@ -51,18 +52,28 @@ void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
   const TriangleRows rows{words, static_cast<std::uint32_t>(claims.size())};
   float reach = 0;
   for (std::uint32_t i = 0; i < rows.count; ++i) {
-    const Vec3d away = to_double(filter.ray.origin) - to_double(rows.triangle(i).a);
-    reach = std::max(reach, -float_below(-(std::abs(away.x) + std::abs(away.y) + std::abs(away.z))));
+    // The least that it may be: of the nearest corners the farthest.
+    const Triangle triangle = rows.triangle(i);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Vec3& corner : {triangle.a, triangle.b, triangle.c}) {
+      const Vec3d away = to_double(filter.ray.origin) - to_double(corner);
+      nearest = std::min(nearest, std::abs(away.x) + std::abs(away.y) + std::abs(away.z));
+    }
+    reach = std::max(reach, -float_below(-nearest));
   }
   for (std::uint32_t first = 0; first < rows.count; first += lanes) {
     const BlockTest test = test_block(ray, rows, first, reach);
     const auto [possible, certain] = test.within(interval);
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
       const auto claimed = [&](std::uint64_t lanes_of) { return (lanes_of >> lane & 1u) != 0; };
-      if (first + lane < rows.count)
-        claims[first + lane] = {claimed(possible), claimed(test.inside), claimed(certain)};
-      else
+      const std::uint32_t i = first + lane;
+      if (i < rows.count) {
+        const PlaneHit plane(ray, rows.triangle(i), rows.edge(i), reach);
+        claims[i] = {claimed(possible), claimed(test.inside), claimed(certain), plane.known(), plane.height,
+                     plane.det,         plane.height_error,   plane.det_error};
+      } else {
         EXPECT_FALSE(claimed(possible) || claimed(certain)) << "there is no such triangle";
+      }
     }
   }
 }
@@ -186,6 +197,15 @@ CloseCall close_call(Random& random) {
   return made;
 }
 
+/// Whether a double lies within `error` of an integer in units of 2^-447, as products of three lengths are.
+bool is_near(double x, double error, const reference::Integer& exact) {
+  if (std::isinf(error)) return true;
+  using boost::multiprecision::cpp_rational;
+  const cpp_rational unit = cpp_rational(1, boost::multiprecision::cpp_int(1) << 447);
+  return abs(cpp_rational(x) - cpp_rational(boost::multiprecision::cpp_int(exact)) * unit) <=
+         cpp_rational(error);
+}
+
 class TriangleBlock : public testing::TestWithParam<const BlockTester*> {
  protected:
   std::vector<TriangleClaim> claims(const Leaf& leaf, const FilterRay& ray, float tmax) const {
@@ -221,6 +241,16 @@ class TriangleBlock : public testing::TestWithParam<const BlockTester*> {
         for (std::size_t j = 0; j < rest.size(); ++j)
           ASSERT_TRUE(rest[j].candidate || truth[j] > t) << "a nearer hit is rejected";
       }
+      if (exactly && claim.known) {
+        const auto o = reference::units(ray.origin), d = reference::units(ray.direction),
+                   a = reference::units(triangle.a), b = reference::units(triangle.b),
+                   c = reference::units(triangle.c);
+        const auto normal = cross(b - a, c - a);
+        reference::Integer det = dot(d, normal), height = dot(a - o, normal);
+        if (det < 0) det = -det, height = -height;
+        ASSERT_TRUE(is_near(claim.det, claim.det_error, det));
+        ASSERT_TRUE(is_near(claim.height, claim.height_error, height));
+      }
       candidates_ += claim.candidate;
       certain_ += claim.certain;
       hits_ += t != no_hit && t <= tmax;
@@ -242,7 +272,7 @@ TEST_P(TriangleBlock, ClaimsOnlyWhatIsTrue) {
       const Leaf leaf(std::move(triangles));
       const Triangle& target =
           leaf.triangles[random.below(static_cast<std::uint32_t>(leaf.triangles.size()))];
-      const bool exactly = i % 16 == 0;
+      const bool exactly = i % 32 == 0;
       for (int j = 0; j < 4; ++j) {
         Ray ray = some_ray(random, style, target);
         const float t = decide(ray, target);
