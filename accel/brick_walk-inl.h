@@ -204,7 +204,6 @@ class BrickWalk {
   }
 
   HWY_INLINE void advance(Place& place, hn::Mask<Floats> which) const {
-    const Floats d;
     const Integers di;
     const FloatVector ahead[3] = {next(place, 0), next(place, 1), next(place, 2)};
     const FloatVector nearest = hn::Min(hn::Min(ahead[0], ahead[1]), ahead[2]);
