@@ -30,7 +30,7 @@ constexpr double leaf_chance = 0.6;
 /// How much dearer a split is for each reference that it makes of one, for what leaves the cache.
 constexpr double duplication_cost = 0.2;
 /// No primitive gets more references than this from splits that each seem worth it.
-constexpr double most_duplication = 8;
+constexpr double most_duplication = 4;
 
 std::size_t blocks_of(std::size_t primitives) {
   return (primitives + block_size - 1) / block_size;
