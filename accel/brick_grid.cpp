@@ -1,10 +1,13 @@
 #include "accel/brick_grid.h"
 
 #include <algorithm>
+#include <atomic>
+#include <optional>
 
 #include "accel/brick_build.h"
 #include "accel/brick_kernels.h"
 #include "accel/cell_overlap.h"
+#include "accel/parallel.h"
 #include "scenes/base/error.h"
 #include "scenes/geometry/rounding.h"
 
@@ -15,9 +18,30 @@ const BrickOverlap& overlap_for(std::string_view isa) {
   return *std::ranges::find(brick_overlaps(), isa, &BrickOverlap::isa);
 }
 
+/// Which part of the cells has a vertex in it, or the middle of a primitive that is no triangle.
+double part_with_vertices(const Scene& scene, const CellGrid& grid, MemoryMeter& meter) {
+  MeteredVector<std::uint8_t> marks(cell_count(grid.n), 0, MeteredAllocator<std::uint8_t>(meter));
+  const auto mark = [&](double x, double y, double z) {
+    std::atomic_ref(marks[grid.cell(grid.layer(0, x), grid.layer(1, y), grid.layer(2, z))])
+        .store(1, std::memory_order_relaxed);
+  };
+  const auto vertices = scene.vertices();
+  for_ranges(vertices.size(), 4096, [&](std::uint64_t begin, std::uint64_t end) {
+    for (const Vec3& v : vertices.subspan(begin, end - begin)) mark(v.x, v.y, v.z);
+  });
+  for (auto p = static_cast<std::uint32_t>(scene.triangles().size()); p < scene.primitive_count(); ++p) {
+    const Bounds box = scene.bounds_of(p);
+    const auto middle = [&](int axis) { return 0.5 * (double(box.low[axis]) + box.high[axis]); };
+    mark(middle(0), middle(1), middle(2));
+  }
+  return double(std::ranges::count(marks, 1)) / double(marks.size());
+}
+
 class BrickGrid final : public Structure {
  public:
-  BrickGrid(const BuildInput& input, const ResolutionRule& top, std::uint32_t leaf,
+  /// Without `top`, cells for each primitive by how much of the scene is full: 0.02, and of what was tried on
+  /// meshes and scattered triangles the best where nearly all of it is, or nearly nothing.
+  BrickGrid(const BuildInput& input, std::optional<ResolutionRule> top, std::uint32_t leaf,
             const BrickKernels& kernels)
       : scene_(input.scene), kernels_(kernels), meter_(input.memory_limit), bricks_(meter_) {
     const Bounds box = scene_.bounds();
@@ -27,8 +51,18 @@ class BrickGrid final : public Structure {
     for (int axis = 0; axis < 3; ++axis)
       if (std::max(-bricks_.space.low[axis], bricks_.space.high[axis]) > 0x1p126)
         throw Error("brick-grid: coordinates beyond 8.5e+37 would leave the range of floats");
-    auto chosen = choose_resolution(top, shape_sizes(scene_),
-                                    ResolutionLimits::within(input.memory_limit, 32 * bricks_.space.margin));
+    const ShapeSizes sizes = shape_sizes(scene_);
+    const auto limits = ResolutionLimits::within(input.memory_limit, 32 * bricks_.space.margin);
+    const auto of_density = [](double value) {
+      return ResolutionRule{ResolutionRule::Kind::density, value, {1, 1, 1}};
+    };
+    if (!top) {
+      const Resolution n = choose_resolution(of_density(0.02), sizes, limits).n;
+      const double part =
+          part_with_vertices(scene_, CellGrid(bricks_.space.low, bricks_.space.high, n), meter_);
+      top = of_density(part > 0.9 ? 0.06 : part < 0.1 ? 0.004 : 0.02);
+    }
+    auto chosen = choose_resolution(*top, sizes, limits);
     // Coarser than other grids where primitives are large: a reference here is 40 bytes and no number.
     const auto limit = std::max<std::uint64_t>(std::uint64_t{1} << 22, 8 * scene_.primitive_count());
     bricks_.cells = registrable_grid(scene_, bricks_.space, limit, chosen);
@@ -47,7 +81,7 @@ class BrickGrid final : public Structure {
     stats_.depth = 1 + bricks_.depth;
     stats_.bytes = meter_.bytes();
     stats_.peak_bytes = meter_.peak();
-    stats_.bytes_by_part = {{"roots", bricks_.roots.capacity() * sizeof(std::uint32_t)},
+    stats_.bytes_by_part = {{"roots", bricks_.roots.capacity() * (sizeof(std::uint32_t) + sizeof(RootBox))},
                             {"nodes", bricks_.nodes.capacity() * sizeof(BrickNode)},
                             {"leaves", bricks_.words.capacity() * sizeof(std::uint32_t)}};
   }
@@ -88,7 +122,8 @@ const BrickKernels& kernels_for(const std::string& isa) {
 }  // namespace
 
 StructureKind brick_grid_kind() {
-  auto parameters = resolution_parameters("density 0.02");
+  auto parameters = resolution_parameters(
+      "density 0.02; 0.06 where nine of ten cells have a vertex, 0.004 where not one of ten has");
   parameters.push_back({"leaf", ParameterType::integer, "0",
                         "split nodes of more primitives than this; 0: where it seems to pay", 0, 1e6});
   parameters.push_back({.name = "isa",
@@ -102,8 +137,13 @@ StructureKind brick_grid_kind() {
           Answers::exact,
           std::move(parameters),
           [](const Arguments& arguments, const BuildInput& input) -> std::unique_ptr<Structure> {
+            // No rule that is given has the density 0.
+            const ResolutionRule given =
+                resolution_rule(arguments, {ResolutionRule::Kind::density, 0, {1, 1, 1}});
             return std::make_unique<BrickGrid>(
-                input, resolution_rule(arguments, {ResolutionRule::Kind::density, 0.02}),
+                input,
+                given.kind == ResolutionRule::Kind::density && given.value == 0 ? std::nullopt
+                                                                                : std::optional(given),
                 static_cast<std::uint32_t>(arguments.integer("leaf")), kernels_for(arguments.text("isa")));
           }};
 }
