@@ -384,34 +384,40 @@ struct Part {
 /// Sorts a leaf's triangles so that neighbours in the array are neighbours in space.
 class LeafOrder {
  public:
+  explicit LeafOrder(MemoryMeter& meter)
+      : triangles_(MeteredAllocator<std::uint32_t>(meter)), cells_(MeteredAllocator<std::uint64_t>(meter)) {}
+
   /// By the first of the cells that they meet, along a Z-order curve (Morton 1966).
   void sort(std::span<std::uint32_t> triangles, std::span<std::uint64_t> cells) {
     if (!LeafWords::has_masks(triangles.size())) return;
-    entries_.clear();
+    triangles_.assign(triangles.begin(), triangles.end());
+    cells_.assign(cells.begin(), cells.end());
+    CellCounts counts{}, places;
+    for (const std::uint64_t mask : cells_) ++counts[key(mask)];
+    std::exclusive_scan(counts.begin(), counts.end(), places.begin(), 0u);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      const auto cell = static_cast<unsigned>(std::countr_zero(cells[i] | std::uint64_t{1} << 63u));
-      entries_.push_back({z_order(cell), triangles[i], cells[i]});
-    }
-    std::ranges::stable_sort(entries_, {}, &Entry::key);
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      triangles[i] = entries_[i].triangle;
-      cells[i] = entries_[i].cells;
+      const std::uint32_t place = places[key(cells_[i])]++;
+      triangles[place] = triangles_[i];
+      cells[place] = cells_[i];
     }
   }
 
  private:
-  struct Entry {
-    unsigned key;
-    std::uint32_t triangle;
-    std::uint64_t cells;
-  };
-  static unsigned z_order(unsigned cell) {
-    unsigned order = 0;
-    for (unsigned axis = 0; axis < 3; ++axis)
-      order |= (cell >> (2 * axis) & 1u) << axis | (cell >> (2 * axis + 1) & 1u) << (axis + 3);
+  static constexpr std::array<std::uint8_t, 64> z_order() {
+    std::array<std::uint8_t, 64> order{};
+    for (unsigned cell = 0; cell < 64; ++cell)
+      for (unsigned axis = 0; axis < 3; ++axis)
+        order[cell] = static_cast<std::uint8_t>(order[cell] | (cell >> (2 * axis) & 1u) << axis |
+                                                (cell >> (2 * axis + 1) & 1u) << (axis + 3));
     return order;
   }
-  std::vector<Entry> entries_;
+  static std::size_t key(std::uint64_t mask) {
+    static constexpr auto order = z_order();
+    return order[static_cast<unsigned>(std::countr_zero(mask | std::uint64_t{1} << 63u))];
+  }
+
+  MeteredVector<std::uint32_t> triangles_;  // as they were, and their cells
+  MeteredVector<std::uint64_t> cells_;
 };
 
 /// Makes nodes and all that is below them, on one thread.
@@ -419,6 +425,7 @@ class TreeBuilder {
  public:
   TreeBuilder(const NodeRules& rules, MemoryMeter& meter)
       : rules_(rules),
+        order_(meter),
         stack_(MeteredAllocator<std::uint32_t>(meter)),
         cells_(MeteredAllocator<std::uint64_t>(meter)) {}
 
@@ -573,7 +580,7 @@ class LargeNodes {
                          rules_.splits(brick, counts, count, task.duplication))) {
       const std::size_t triangles = rules_.triangles_among(primitives);
       std::vector<std::uint32_t> ordered(primitives.begin(), primitives.end());
-      LeafOrder().sort(std::span(ordered).first(triangles), cells.first(triangles));
+      LeafOrder(meter_).sort(std::span(ordered).first(triangles), cells.first(triangles));
       part.make_leaf(brick.node, std::span(ordered).first(triangles), cells.first(triangles),
                      primitives.subspan(triangles));
       task.made = brick.node;
@@ -627,8 +634,22 @@ void build_bricks(const Scene& scene, const BrickOptions& options, MemoryMeter& 
   const NodeRules rules(scene, bricks, options);
   MeteredVector<Task> tasks{MeteredAllocator<Task>(meter)};
   CellLists lists(meter);
-  lists.build(rules.block_count(), scene.primitive_count(),
-              [&](std::uint32_t p, const auto& add) { rules.for_each_block_near(p, add); });
+  {
+    // The one block that a primitive is near, so that its box need not be found twice.
+    constexpr std::uint32_t unknown = 0xffffffffu;
+    MeteredVector<std::uint32_t> only(scene.primitive_count(), unknown,
+                                      MeteredAllocator<std::uint32_t>(meter));
+    lists.build(rules.block_count(), scene.primitive_count(), [&](std::uint32_t p, const auto& add) {
+      if (only[p] != unknown) return add(only[p]);
+      std::uint64_t near = 0, last = 0;
+      rules.for_each_block_near(p, [&](std::uint64_t block) {
+        add(block);
+        ++near;
+        last = block;
+      });
+      if (near == 1) only[p] = static_cast<std::uint32_t>(last);
+    });
+  }
   for (std::uint32_t block = 0; block < lists.cells(); ++block)
     if (!lists[block].empty()) tasks.push_back({.primitives = lists[block], .block = block});
 

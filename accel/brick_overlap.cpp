@@ -63,17 +63,14 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::CappedTag<double, 8>;
 using DoubleVector = hn::Vec<Doubles>;
+using GroupFloats = hn::Rebind<float, Doubles>;
+using GroupFloatVector = hn::Vec<GroupFloats>;
 /// As many triangles as a vector has doubles are prepared together.
 constexpr std::size_t group = hn::MaxLanes(Doubles());
 using Floats = hn::CappedTag<float, widest_vector>;
 using FloatVector = hn::Vec<Floats>;
 constexpr std::size_t lanes = hn::MaxLanes(Floats());
-
-struct Doubles3 {
-  DoubleVector v[3];
-  DoubleVector& operator[](std::size_t axis) { return v[axis]; }
-  const DoubleVector& operator[](std::size_t axis) const { return v[axis]; }
-};
+constexpr float tiny = 1e-30f;
 
 std::uint64_t bits_of(hn::Mask<Floats> mask) {
   std::uint64_t bits = 0;
@@ -81,137 +78,163 @@ std::uint64_t bits_of(hn::Mask<Floats> mask) {
   return bits;
 }
 
-/// A group of triangles made ready for the separating axes of Akenine-Moeller, "Fast 3D Triangle-Box Overlap
-/// Testing", 2001: the box's own, the edges' as seen along each of these (a triangle's shadow against 4x4
-/// squares, by edge functions, as in Schwarz & Seidel, "Fast Parallel Surface and Solid Voxelization on
-/// GPUs", 2010), and the triangle's plane.
+/// The cells of a brick that triangles meet, by the separating axes of Akenine-Moeller, "Fast 3D Triangle-Box
+/// Overlap Testing", 2001: the box's own; the edges' as seen along each of these (a triangle's shadow against
+/// 4x4 squares, by edge functions, as in Schwarz & Seidel, "Fast Parallel Surface and Solid Voxelization on
+/// GPUs", 2010); and the triangle's plane.
 ///
-/// Everything is in units in which a cell is 1 wide and the brick begins at 0, in double until what is small
-/// has been subtracted. A cell's half width on each axis, grown by its slack in these units, is `reach`. Of
-/// the slack, the roundings of a plane take one part; it is twice that, so that the other pays for
-/// - a relative error of 2^-48 in corners and edges, which their coordinates limit to 2^-6 of the margin;
-/// - what is added to it, 2^-18 of a cell, for the floats in the end: coefficients, and sums of two or three
-///   products with at most four cells. `tiny` pays for such as are flushed to zero.
-class Group {
+/// Everything is in units in which a cell is 1 wide and the brick begins at 0. A cell is grown, in these
+/// units, by twice its slack, of which one half pays for
+/// - a relative error of 2^-48 in what is computed in double: that is 2^-6 of the margin, as no triangle
+///   reaches farther than 2^40 of it;
+/// and by 2^-18, which pays for
+/// - floats less than eight cells away (of the box), and their coefficients and sums of two or three products
+///   with at most four cells (of edges and plane). `tiny` pays for such as are flushed to zero.
+class BrickCells {
  public:
-  explicit Group(const CutBrick& brick) {
-    const Doubles d;
+  explicit BrickCells(const CutBrick& brick) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double size = brick.node.size[axis];
-      const double slack = 2 * brick.slack(static_cast<int>(axis)) / size;
-      low_[axis] = hn::Set(d, double(brick.node.low[axis]));
-      per_size_[axis] = hn::Set(d, 1 / size);
-      slack_[axis] = hn::Set(d, slack + 0x1p-18);
-      reach_[axis] = hn::Set(d, 0.5 + slack + 0x1p-18);
-      layers_[axis] = hn::Set(d, double(brick.layers[axis]));
+      const double size = brick.node.size[axis],
+                   slack = 2 * brick.slack(static_cast<int>(axis)) / size + 0x1p-18;
+      low_[axis] = brick.node.low[axis];
+      per_size_[axis] = 1 / size;
+      slack_[axis] = static_cast<float>(slack);
+      layers_[axis] = static_cast<float>(brick.layers[axis]);
       only_boxes_ |= slack > 1024;
       cells_ &= cells_in_layers[axis][layer_range(0, brick.layers[axis])];
     }
   }
 
-  HWY_INLINE void prepare(const TriangleColumns& triangles, std::size_t first) {
-    const Doubles d;
-    const hn::Rebind<float, Doubles> floats;
-    Doubles3 corner[3], at[3], edge[3];
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        corner[c][axis] =
-            hn::PromoteTo(d, hn::LoadU(floats, triangles.rows + (3 * c + axis) * triangles.stride + first));
-        at[c][axis] = hn::Mul(hn::Sub(corner[c][axis], low_[axis]), per_size_[axis]);
+  void find(const TriangleColumns& triangles, std::uint64_t* cells) {
+    for (std::size_t first = 0; first < triangles.count; first += lanes) {
+      const std::size_t count = std::min(lanes, triangles.count - first);
+      std::uint64_t spread = by_boxes(triangles, first, cells + first) & ((1u << count) - 1);
+      if (only_boxes_) continue;
+      for (std::size_t i = 0; i < count; i += group) {
+        constexpr std::uint64_t all = (1u << group) - 1;
+        std::uint64_t rest = spread >> i & all;
+        if (rest == 0) continue;
+        prepare(triangles, first + i);
+        for (; rest != 0; rest &= rest - 1) {
+          const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+          cells[first + i + j] &= by_shadows(spans_[i + j], j);
+        }
       }
-    set_box(at);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        edge[c][axis] = hn::Mul(hn::Sub(corner[(c + 1) % 3][axis], corner[c][axis]), per_size_[axis]);
-
-    // The normal, whose components are twice the areas of the shadows, and their errors.
-    Doubles3 normal, doubt;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-      const DoubleVector a = hn::Mul(edge[0][i], edge[1][j]), b = hn::Mul(edge[0][j], edge[1][i]);
-      normal[k] = hn::Sub(a, b);
-      doubt[k] = hn::Add(hn::Mul(hn::Add(hn::Abs(a), hn::Abs(b)), hn::Set(d, 0x1p-47)), hn::Set(d, tiny));
-    }
-    for (std::size_t k = 0; k < 3; ++k) set_edges(k, at, edge, normal[k], doubt[k]);
-
-    DoubleVector along = hn::Zero(d), reach = hn::Set(d, tiny);
-    for (std::size_t k = 0; k < 3; ++k) {
-      along = hn::Add(along, hn::Mul(normal[k], at[0][k]));
-      reach = hn::Add(reach, hn::Mul(hn::Abs(normal[k]), reach_[k]));
-      // The normal is not quite perpendicular to the edges.
-      reach = hn::Add(reach, hn::Mul(doubt[k], hn::Add(hn::Abs(edge[0][k]), hn::Abs(edge[1][k]))));
-      store(normal[k], normal_[k]);
-    }
-    store(hn::Sub(along, reach), nearest_);
-    store(hn::Add(along, reach), farthest_);
-  }
-
-  /// The cells that triangle i of the group meets.
-  HWY_INLINE std::uint64_t cells_of(std::size_t i) const {
-    const std::uint64_t box = cells_ & cells_in_layers[0][static_cast<std::size_t>(layers_met_[0][i])] &
-                              cells_in_layers[1][static_cast<std::size_t>(layers_met_[1][i])] &
-                              cells_in_layers[2][static_cast<std::size_t>(layers_met_[2][i])];
-    // In a row that its box lies in, a triangle meets every cell; in a layer, those that its shadow meets.
-    switch (only_boxes_ ? 0 : spans_[i]) {
-      case 0b011:
-        return box & along_z(shadow(2, i));
-      case 0b101:
-        return box & along_y(shadow(1, i));
-      case 0b110:
-        return box & along_x(shadow(0, i));
-      case 0b111:
-        return box & along_z(shadow(2, i)) & along_y(shadow(1, i)) & along_x(shadow(0, i)) & by_plane(i);
-      default:
-        return box;
     }
   }
 
  private:
-  using Numbers = float[group];
-  static constexpr double tiny = 1e-30;
+  using Doubles3 = DoubleVector[3];
 
-  static HWY_INLINE void store(DoubleVector from, Numbers& to) {
-    const hn::Rebind<float, Doubles> floats;
-    hn::StoreU(hn::DemoteTo(floats, from), floats, to);
-  }
-
-  HWY_INLINE void set_box(const Doubles3 (&at)[3]) {
-    const Doubles d;
-    const hn::Rebind<std::int32_t, Doubles> ints;
-    auto spans = hn::Zero(ints);
+  /// The cells that a vector of triangles' boxes meet; and, bit by bit, for which of them that is not enough:
+  /// in a row that its box lies in, a triangle meets every cell.
+  HWY_INLINE std::uint64_t by_boxes(const TriangleColumns& triangles, std::size_t first,
+                                    std::uint64_t* cells) {
+    const Floats d;
+    const hn::RebindToSigned<Floats> ints;
+    alignas(64) std::int32_t met[3][lanes];
+    auto all_spans = hn::Zero(ints);
+    auto axes = hn::Zero(ints);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const DoubleVector low = hn::Min(hn::Min(at[0][axis], at[1][axis]), at[2][axis]);
-      const DoubleVector high = hn::Max(hn::Max(at[0][axis], at[1][axis]), at[2][axis]);
-      // A layer beyond the brick's at either end stands for all that lies there.
-      const auto layer = [&](DoubleVector x) {
-        const auto beyond = hn::Add(layers_[axis], hn::Set(d, 1.0));
-        return hn::DemoteTo(ints, hn::Min(hn::Max(hn::Add(x, hn::Set(d, 1.0)), hn::Zero(d)), beyond));
+      const auto at = [&](std::size_t c) {
+        return hn::LoadU(d, triangles.rows + (3 * c + axis) * triangles.stride + first);
       };
-      const auto first = layer(hn::Sub(low, slack_[axis])), last = layer(hn::Add(high, slack_[axis]));
-      hn::StoreU(hn::Add(hn::ShiftLeft<3>(first), last), ints, layers_met_[axis]);
-      const auto several = hn::Gt(last, first);
-      spans = hn::Or(spans, hn::IfThenElseZero(several, hn::Set(ints, 1 << axis)));
+      const FloatVector a = at(0), b = at(1), c = at(2), low = hn::Set(d, low_[axis]),
+                        per_size = hn::Set(d, static_cast<float>(per_size_[axis])),
+                        slack = hn::Set(d, slack_[axis]), one = hn::Set(d, 1.0f),
+                        beyond = hn::Set(d, layers_[axis] + 1);
+      // A layer beyond the brick's at either end stands for all that lies there.
+      const auto layer = [&](FloatVector x) {
+        return hn::ConvertTo(ints, hn::Min(hn::Max(hn::Add(x, one), hn::Zero(d)), beyond));
+      };
+      const auto scaled = [&](FloatVector x) { return hn::Mul(hn::Sub(x, low), per_size); };
+      const auto first_layer = layer(hn::Sub(scaled(hn::Min(hn::Min(a, b), c)), slack)),
+                 last_layer = layer(hn::Add(scaled(hn::Max(hn::Max(a, b), c)), slack));
+      hn::Store(hn::Add(hn::ShiftLeft<3>(first_layer), last_layer), ints, met[axis]);
+      const auto several = hn::Gt(last_layer, first_layer);
+      all_spans = hn::Or(all_spans, hn::IfThenElseZero(several, hn::Set(ints, 1 << axis)));
+      axes = hn::Add(axes, hn::IfThenElseZero(several, hn::Set(ints, 1)));
     }
-    hn::StoreU(spans, ints, spans_);
+    hn::StoreU(all_spans, ints, spans_);
+    for (std::size_t i = 0; i < std::min(lanes, triangles.count - first); ++i)
+      cells[i] = cells_ & cells_in_layers[0][static_cast<std::size_t>(met[0][i])] &
+                 cells_in_layers[1][static_cast<std::size_t>(met[1][i])] &
+                 cells_in_layers[2][static_cast<std::size_t>(met[2][i])];
+    return bits_of(hn::RebindMask(d, hn::Gt(axes, hn::Set(ints, 1))));
   }
 
-  /// The edge functions of the shadow along axis k: positive inside. A square is missed where one is negative
-  /// on all of it.
-  HWY_INLINE void set_edges(std::size_t k, const Doubles3 (&at)[3], const Doubles3 (&edge)[3],
-                            DoubleVector area, DoubleVector doubt) {
+  /// Makes a group of triangles ready.
+  HWY_INLINE void prepare(const TriangleColumns& triangles, std::size_t first) {
     const Doubles d;
-    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-    const DoubleVector sign = hn::And(area, hn::SignBit(d));
-    for (std::size_t c = 0; c < 3; ++c) {
-      const DoubleVector ei = edge[c][i], ej = edge[c][j];
-      const DoubleVector at_origin = hn::Sub(hn::Mul(at[c][i], ej), hn::Mul(at[c][j], ei));
-      // Where the sign is in doubt, the shadow is so thin that all of it is within `doubt` of its edges.
-      const DoubleVector reach =
-          hn::Add(hn::Add(hn::Mul(hn::Abs(ei), reach_[j]), hn::Mul(hn::Abs(ej), reach_[i])), doubt);
-      const DoubleVector by_i = hn::Xor(hn::Neg(ej), sign), by_j = hn::Xor(ei, sign);
-      store(k == 1 ? by_j : by_i, edges_[k][c].by_column);  // x, y, x
-      store(k == 1 ? by_i : by_j, edges_[k][c].by_row);     // z, z, y
-      store(hn::Neg(hn::Add(hn::Xor(at_origin, sign), reach)), edges_[k][c].least);
+    const GroupFloats f;
+    Doubles3 at[3], edge[3];
+    GroupFloatVector edges[3][3], reach[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const DoubleVector low = hn::Set(d, double(low_[axis])), per_size = hn::Set(d, per_size_[axis]);
+      DoubleVector corner[3];
+      for (std::size_t c = 0; c < 3; ++c) {
+        corner[c] =
+            hn::PromoteTo(d, hn::LoadU(f, triangles.rows + (3 * c + axis) * triangles.stride + first));
+        at[c][axis] = hn::Mul(hn::Sub(corner[c], low), per_size);
+      }
+      for (std::size_t c = 0; c < 3; ++c) {
+        edge[c][axis] = hn::Mul(hn::Sub(corner[(c + 1) % 3], corner[c]), per_size);
+        edges[c][axis] = hn::DemoteTo(f, edge[c][axis]);
+      }
+      reach[axis] = hn::Set(f, 0.5f + slack_[axis]);
+    }
+
+    DoubleVector along = hn::Zero(d);
+    GroupFloatVector plane_reach = hn::Set(f, tiny);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+      // The normal, whose components are twice the areas of the shadows, and its error.
+      const DoubleVector a = hn::Mul(edge[0][i], edge[1][j]), b = hn::Mul(edge[0][j], edge[1][i]),
+                         exact_area = hn::Sub(a, b);
+      const GroupFloatVector area = hn::DemoteTo(f, exact_area);
+      const GroupFloatVector doubt = hn::Add(
+          hn::Mul(hn::DemoteTo(f, hn::Add(hn::Abs(a), hn::Abs(b))), hn::Set(f, 0x1p-47f)), hn::Set(f, tiny));
+
+      // Edge functions of the shadow along axis k, positive inside: a square is missed where one is negative
+      // on all of it. Where the sign of the area is in doubt, all of the shadow is within that doubt of its
+      // edges.
+      const GroupFloatVector sign = hn::And(area, hn::SignBit(f)), other_sign = hn::Xor(sign, hn::SignBit(f));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const GroupFloatVector at_origin =
+            hn::DemoteTo(f, hn::Sub(hn::Mul(at[c][i], edge[c][j]), hn::Mul(at[c][j], edge[c][i])));
+        const GroupFloatVector ei = edges[c][i], ej = edges[c][j];
+        const GroupFloatVector edge_reach =
+            hn::Add(hn::Add(hn::Mul(hn::Abs(ei), reach[j]), hn::Mul(hn::Abs(ej), reach[i])), doubt);
+        Edge& to = edges_[k][c];
+        hn::StoreU(hn::Xor(ej, other_sign), f,
+                   k == 1 ? to.by_row : to.by_column);  // y and x are columns, x is
+        hn::StoreU(hn::Xor(ei, sign), f, k == 1 ? to.by_column : to.by_row);
+        hn::StoreU(hn::Sub(hn::Xor(at_origin, other_sign), edge_reach), f, to.least);
+      }
+
+      along = hn::Add(along, hn::Mul(exact_area, at[0][k]));
+      // The normal is not quite perpendicular to the edges.
+      const GroupFloatVector askew = hn::Mul(doubt, hn::Add(hn::Abs(edges[0][k]), hn::Abs(edges[1][k])));
+      plane_reach = hn::Add(plane_reach, hn::Add(hn::Mul(hn::Abs(area), reach[k]), askew));
+      hn::StoreU(area, f, normal_[k]);
+    }
+    hn::StoreU(hn::Neg(hn::DemoteTo(f, along)), f, plane_at_);
+    hn::StoreU(plane_reach, f, plane_reach_);
+  }
+
+  /// Of a triangle of the group, whose box spans several layers on the axes of the set `spans`, the cells
+  /// that it meets: all of its shadows that spread do. A triangle in one layer is as good as its shadow.
+  HWY_INLINE std::uint64_t by_shadows(std::int32_t spans, std::size_t triangle) const {
+    switch (spans) {
+      case 0b011:
+        return along_z(shadow(2, triangle));
+      case 0b101:
+        return along_y(shadow(1, triangle));
+      case 0b110:
+        return along_x(shadow(0, triangle));
+      default:
+        return along_z(shadow(2, triangle)) & along_y(shadow(1, triangle)) & along_x(shadow(0, triangle)) &
+               by_plane(triangle);
     }
   }
 
@@ -247,38 +270,39 @@ class Group {
   /// The cells that the triangle's plane meets.
   HWY_INLINE std::uint64_t by_plane(std::size_t triangle) const {
     const Floats d;
-    const FloatVector nearest = hn::Set(d, nearest_[triangle]), farthest = hn::Set(d, farthest_[triangle]);
+    const FloatVector reach = hn::Set(d, plane_reach_[triangle]);
     std::uint64_t missed = 0;
     for (std::size_t v = 0; v < 16 / lanes; ++v) {
-      const FloatVector in_layer = hn::Add(hn::Mul(column_centres(), hn::Set(d, normal_[0][triangle])),
-                                           hn::Mul(row_centres(v), hn::Set(d, normal_[1][triangle])));
+      const FloatVector in_row =
+          hn::Add(hn::Mul(row_centres(v), hn::Set(d, normal_[1][triangle])), hn::Set(d, plane_at_[triangle]));
+      const FloatVector in_layer =
+          hn::Add(in_row, hn::Mul(column_centres(), hn::Set(d, normal_[0][triangle])));
       for (std::size_t z = 0; z < 4; ++z) {
-        const FloatVector value =
+        const FloatVector away =
             hn::Add(in_layer, hn::Set(d, (static_cast<float>(z) + 0.5f) * normal_[2][triangle]));
-        missed |= bits_of(hn::Or(hn::Lt(value, nearest), hn::Gt(value, farthest))) << (16 * z + v * lanes);
+        missed |= bits_of(hn::Gt(hn::Abs(away), reach)) << (16 * z + v * lanes);
       }
     }
     return ~missed;
   }
 
   struct Edge {
-    Numbers by_column, by_row, least;
+    float by_column[group], by_row[group], least[group];
   };
-  Doubles3 low_, per_size_, slack_, reach_, layers_;
-  std::uint64_t cells_ = ~std::uint64_t{0};  // of the brick
-  bool only_boxes_ = false;  // cells are so small beside the slack that nothing else is worth a test
+
+  // The brick.
+  std::array<float, 3> low_{}, slack_{}, layers_{};
+  std::array<double, 3> per_size_{};
+  std::uint64_t cells_ = ~std::uint64_t{0};
+  bool only_boxes_ = false;    // cells are so small beside the slack that nothing else is worth a test
+  std::int32_t spans_[lanes];  // the axes along which a box meets several layers, as a set
+  // The group that is ready.
   Edge edges_[3][3];
-  Numbers normal_[3], nearest_, farthest_;
-  std::int32_t layers_met_[3][group], spans_[group];
+  float normal_[3][group], plane_at_[group], plane_reach_[group];
 };
 
 void cells_of(const CutBrick& brick, const TriangleColumns& triangles, std::uint64_t* cells) {
-  Group prepared(brick);
-  for (std::size_t first = 0; first < triangles.count; first += group) {
-    prepared.prepare(triangles, first);
-    const std::size_t count = std::min(group, triangles.count - first);
-    for (std::size_t i = 0; i < count; ++i) cells[first + i] = prepared.cells_of(i);
-  }
+  BrickCells(brick).find(triangles, cells);
 }
 
 Bounds bounds_of(const TriangleColumns& triangles) {

@@ -8,7 +8,6 @@
 
 #include "scenes/geometry/filter.h"
 #include "scenes/geometry/primitives.h"
-#include "scenes/geometry/rounding.h"
 
 namespace raymeter {
 
@@ -59,7 +58,8 @@ struct TriangleRows {
       return std::abs(double(v.x) - triangle.a.x) + std::abs(double(v.y) - triangle.a.y) +
              std::abs(double(v.z) - triangle.a.z);
     };
-    put_float(-float_below(-edge_unit * (std::max(norm(triangle.b), norm(triangle.c)) + filter::tiny)));
+    put_float(static_cast<float>(edge_unit * (std::max(norm(triangle.b), norm(triangle.c)) + filter::tiny) *
+                                 (1 + 0x1p-23)));
     words[column] = primitive;
   }
 };

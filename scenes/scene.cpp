@@ -250,11 +250,10 @@ Scene::Scene(SceneData data) : data_(std::move(data)) {
   hash_ = hash_of(data_);
 }
 
-Bounds Scene::bounds_of(std::uint32_t primitive) const {
+Bounds Scene::bounds_of_other(std::uint32_t primitive) const {
   const std::size_t others = data_.triangles.size() + data_.quadrics.size();
-  if (primitive >= others) return general_quadric_bounds_[primitive - others];
-  return is_triangle(primitive) ? raymeter::bounds_of(triangle(primitive))
-                                : raymeter::bounds_of(quadric(primitive));
+  return primitive >= others ? general_quadric_bounds_[primitive - others]
+                             : raymeter::bounds_of(quadric(primitive));
 }
 
 Vec3d Scene::geometric_normal(std::uint32_t primitive, const Vec3d& point) const {

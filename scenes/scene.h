@@ -116,7 +116,9 @@ class Scene {
       return std::forward<F>(f)(quadric(primitive));
     return std::forward<F>(f)(general_quadric(primitive));
   }
-  Bounds bounds_of(std::uint32_t primitive) const;
+  Bounds bounds_of(std::uint32_t primitive) const {
+    return is_triangle(primitive) ? raymeter::bounds_of(triangle(primitive)) : bounds_of_other(primitive);
+  }
 
   /// Unit normal of the surface at a point on it, unoriented; {0,0,0} where there is none (a cone's tip).
   Vec3d geometric_normal(std::uint32_t primitive, const Vec3d& point) const;
@@ -135,6 +137,8 @@ class Scene {
   std::span<const std::string> warnings() const { return data_.warnings; }
 
  private:
+  Bounds bounds_of_other(std::uint32_t primitive) const;
+
   SceneData data_;
   std::vector<Bounds> general_quadric_bounds_;  // which take microseconds to find
   Bounds bounds_;

@@ -27,14 +27,6 @@ void extend_with_disc(Bounds& box, const Vec3& p, double r, const Vec3d& axis, d
 
 }  // namespace
 
-Bounds bounds_of(const Triangle& triangle) {
-  Bounds box;
-  box.extend(triangle.a);
-  box.extend(triangle.b);
-  box.extend(triangle.c);
-  return box;
-}
-
 Bounds bounds_of(const Quadric& quadric) {
   Bounds box;
   if (quadric.kind == QuadricKind::sphere) {

@@ -37,7 +37,13 @@ struct GeneralQuadric {
   Bounds clip;  ///< in the scene's coordinates
 };
 
-Bounds bounds_of(const Triangle& triangle);
+inline Bounds bounds_of(const Triangle& triangle) {
+  Bounds box;
+  box.extend(triangle.a);
+  box.extend(triangle.b);
+  box.extend(triangle.c);
+  return box;
+}
 /// Contains every point of the surface, exactly; tight to a few ulps.
 Bounds bounds_of(const Quadric& quadric);
 /// Contains every point of the surface, exactly, and lies within the clip box; wider than the surface by

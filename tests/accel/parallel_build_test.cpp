@@ -120,5 +120,30 @@ TEST(ParallelBuild, EveryStructureCostsTheSameForAnyNumberOfThreads) {
   }
 }
 
+/// Nodes of more than 16,384 primitives are made by all threads together.
+TEST(ParallelBuild, OfLargeBrickNodesIsTheSameAndRight) {
+  for (const char* name : {"soup:triangles=20000:size=0.05", "clusters:objects=20000:primitive=sphere"}) {
+    const Scene scene = open_scene(name);
+    const auto rays = hostile_rays(8, 60, scene);
+    const std::string spec = "brick-grid:cells=1";
+    const std::string one = seen_from_outside(spec, scene, rays, 1);
+    EXPECT_EQ(seen_from_outside(spec, scene, rays, 2), one) << name;
+    EXPECT_EQ(seen_from_outside(spec, scene, rays, 6), one) << name;
+    const auto bricks = build(spec, scene);
+    EXPECT_GT(bricks->stats().depth, 2u);
+    expect_brute_force(*bricks, scene, rays, name);
+  }
+  // One whose primitives are all in the same place, and so a leaf.
+  SceneData data;
+  data.name = "pile";
+  data.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  data.triangles.assign(20000, {0, 1, 2});
+  const Scene pile(std::move(data));
+  const auto rays = hostile_rays(9, 20, pile);
+  const auto bricks = build("brick-grid", pile);
+  EXPECT_EQ(bricks->stats().inner_nodes, 0u);
+  expect_brute_force(*bricks, pile, rays, "pile");
+}
+
 }  // namespace
 }  // namespace raymeter
