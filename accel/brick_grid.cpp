@@ -42,8 +42,8 @@ class BrickGrid final : public Structure {
   /// Without `top`, cells for each primitive by how much of the scene is full: 0.02, and of what was tried on
   /// meshes and scattered triangles the best where nearly all of it is, or nearly nothing.
   BrickGrid(const BuildInput& input, std::optional<ResolutionRule> top, std::uint32_t leaf,
-            const BrickKernels& kernels)
-      : scene_(input.scene), kernels_(kernels), meter_(input.memory_limit), bricks_(meter_) {
+            const BrickKernels& kernels, const std::string& query)
+      : scene_(input.scene), kernels_(kernels), query_(query), meter_(input.memory_limit), bricks_(meter_) {
     const Bounds box = scene_.bounds();
     bricks_.space = WalkSpace(box.empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : box, 0x1p-17);
     for (int axis = 0; axis < 3; ++axis) bricks_.space.low[axis] = float_below(bricks_.space.low[axis]);
@@ -87,24 +87,30 @@ class BrickGrid final : public Structure {
   }
 
   void trace_closest(const BatchView& batch, std::span<Hit> hits) const override {
-    kernels_.trace_closest(bricks_, scene_, batch, hits);
+    kernels_.trace_closest(bricks_, scene_, batch, packets(batch), hits);
   }
   void trace_any(const BatchView& batch, std::span<std::uint8_t> occluded) const override {
-    kernels_.trace_any(bricks_, scene_, batch, occluded);
+    kernels_.trace_any(bricks_, scene_, batch, packets(batch), occluded);
   }
   void count_closest(const BatchView& batch, std::span<Hit> hits,
                      std::span<RayCounters> counters) const override {
-    kernels_.count_closest(bricks_, scene_, batch, hits, counters);
+    kernels_.count_closest(bricks_, scene_, batch, packets(batch), hits, counters);
   }
   void count_any(const BatchView& batch, std::span<std::uint8_t> occluded,
                  std::span<RayCounters> counters) const override {
-    kernels_.count_any(bricks_, scene_, batch, occluded, counters);
+    kernels_.count_any(bricks_, scene_, batch, packets(batch), occluded, counters);
   }
   StructureStats stats() const override { return stats_; }
 
  private:
+  PacketUse packets(const BatchView& batch) const {
+    if (query_ == "auto") return batch.coherent ? PacketUse::where_worth_while : PacketUse::never;
+    return query_ == "1" ? PacketUse::never : PacketUse::always;
+  }
+
   const Scene& scene_;
   const BrickKernels& kernels_;
+  std::string query_;
   MemoryMeter meter_;
   Bricks bricks_;
   StructureStats stats_;
@@ -131,6 +137,11 @@ StructureKind brick_grid_kind() {
                         .default_value = "default",
                         .meaning = "instruction set; default: the widest that the CPU has",
                         .choices = {"default", "sse4.2", "avx2", "avx512"}});
+  parameters.push_back({.name = "query",
+                        .type = ParameterType::choice,
+                        .default_value = "auto",
+                        .meaning = "rays traced together; auto: 16 of a coherent batch where that is worth while, else 1",
+                        .choices = {"auto", "1", "16"}});
   return {"brick-grid",
           "a coarse grid of trees of 4x4x4 bricks, walked and tested with SIMD instructions",
           "Jevans & Wyvill 1989; masks: Museth 2013; tests in blocks: Moeller & Trumbore 1997",
@@ -140,11 +151,12 @@ StructureKind brick_grid_kind() {
             // No rule that is given has the density 0.
             const ResolutionRule given =
                 resolution_rule(arguments, {ResolutionRule::Kind::density, 0, {1, 1, 1}});
-            return std::make_unique<BrickGrid>(
-                input,
-                given.kind == ResolutionRule::Kind::density && given.value == 0 ? std::nullopt
-                                                                                : std::optional(given),
-                static_cast<std::uint32_t>(arguments.integer("leaf")), kernels_for(arguments.text("isa")));
+            return std::make_unique<BrickGrid>(input,
+                                               given.kind == ResolutionRule::Kind::density && given.value == 0
+                                                   ? std::nullopt
+                                                   : std::optional(given),
+                                               static_cast<std::uint32_t>(arguments.integer("leaf")),
+                                               kernels_for(arguments.text("isa")), arguments.text("query"));
           }};
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "accel/brick_packet-inl.h"
 #include "accel/brick_ray-inl.h"
 #include "accel/brick_walk-inl.h"
 #include "accel/grid_walk.h"
@@ -32,10 +33,7 @@ struct Leaf {
 
   /// Whether the block of triangles that begins with `first` may be hit.
   bool has(std::uint32_t first) const {
-    if (!LeafWords::has_masks(triangles.count)) return true;
-    const std::uint32_t* const mask =
-        triangles.words + TriangleRows::rows * triangles.count + 2 * (first / LeafWords::block);
-    return (pierced & (mask[0] | std::uint64_t{mask[1]} << 32u)) != 0;
+    return (pierced & LeafWords::cells(triangles.words, triangles.count, first)) != 0;
   }
 };
 
@@ -138,7 +136,9 @@ class AnyHit {
       if (certain != 0) return found();
       for (std::uint64_t candidates = possible; candidates != 0; candidates &= candidates - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        if (hits(leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach)) return found();
+        probe_.decide();
+        if (decide_any(ray_, leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach))
+          return found();
       }
     }
     if (!leaf.others.empty()) visit_others(leaf.others);
@@ -151,25 +151,6 @@ class AnyHit {
   HWY_INLINE void found() {
     hit_ = true;
     interval_.after = -std::numeric_limits<float>::infinity();
-  }
-  HWY_INLINE bool hits(const TriangleRows& triangles, std::uint32_t column, bool inside, float reach) {
-    probe_.decide();
-    const Triangle triangle = triangles.triangle(column);
-    const PlaneHit plane(ray_, triangle, triangles.edge(column), reach);
-    const Ray& ray = *ray_.ray;
-    if (plane.known()) {
-      // Room for the rounding of t to a float.
-      constexpr double more = 1 + 0x1p-22, less = 1 - 0x1p-22;
-      const double low = plane.height - plane.height_error, high = plane.height + plane.height_error;
-      const double least_det = plane.det - plane.det_error, greatest_det = plane.det + plane.det_error;
-      const double tnear = ray.tnear, tfar = ray.tfar;
-      if (high < tnear * less * least_det || low > std::max(tfar, double(FLT_MIN)) * more * greatest_det)
-        return false;
-      if (inside && low > std::max(tnear, double(FLT_MIN)) * more * greatest_det &&
-          high < std::min(tfar, double(FLT_MAX)) * less * least_det)
-        return true;
-    }
-    return decide(ray, triangle) != no_hit;
   }
   HWY_NOINLINE void visit_others(std::span<const std::uint32_t> others) {
     const FilterRay filter(*ray_.ray);
@@ -202,7 +183,7 @@ class TreeWalk {
     const std::uint64_t cells = ray.pierced(node, tnear, query.tmax());
     if (cells != 0 && node.is_leaf()) {
       probe.cell_step(false);
-      query.visit(leaf_of(bricks, node, reach_, ray.mirrored(cells)));
+      query.visit(leaf_of(bricks, node, reach_, mirrored(cells, ray.octant)));
       if (query.done()) return false;
     } else {
       probe.inner_step();
@@ -333,40 +314,108 @@ HWY_INLINE void answer_all(const Bricks& bricks, const Scene& scene, std::span<c
   }
 }
 
-void trace_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, std::span<Hit> hits) {
-  const FlushDenormals mode;
-  NoProbe probe;
-  for (std::size_t i = 0; i < batch.rays.size(); i += lanes) {
-    const std::size_t n = std::min(lanes, batch.rays.size() - i);
-    answer_all<ClosestHit<NoProbe>>(bricks, scene, batch.rays.subspan(i, n), hits.subspan(i, n), probe);
+/// How many rays are given to answer_all at once.
+template <class Probe>
+inline constexpr std::size_t at_once = std::is_same_v<Probe, NoProbe> ? lanes : 1;
+
+/// Answers those of packet_size rays that are in no packet.
+template <class Query, class Answer, class Probe>
+HWY_NOINLINE void answer_others(const Bricks& bricks, const Scene& scene, const Ray* rays, PacketMask which,
+                                Answer* answers, Probe& probe) {
+  while (which != 0) {
+    std::array<Ray, at_once<Probe>> some;
+    std::array<Answer, at_once<Probe>> theirs;
+    std::array<std::size_t, at_once<Probe>> places;
+    std::size_t n = 0;
+    for (; n < some.size() && which != 0; which &= which - 1) {
+      places[n] = static_cast<std::size_t>(std::countr_zero(which));
+      some[n] = rays[places[n]];
+      ++n;
+    }
+    probe.select(places[0]);
+    answer_all<Query>(bricks, scene, {some.data(), n}, std::span(theirs.data(), n), probe);
+    for (std::size_t i = 0; i < n; ++i) answers[places[i]] = theirs[i];
   }
 }
-void trace_any(const Bricks& bricks, const Scene& scene, const BatchView& batch,
+
+/// Packets of fewer rays are not worth their set-up.
+constexpr int fewest_in_packet = 4;
+
+/// Answers packet_size rays, or fewer; those that go the same way, together.
+template <class Query, class Queries, class Answer, class Probe>
+HWY_INLINE void answer_packet(const Bricks& bricks, const Scene& scene, std::span<const Ray> rays,
+                              std::span<Answer> answers, PacketSharing& sharing, Probe& probe) {
+  std::array<Ray, packet_size> padded;
+  const Ray* group = rays.data();
+  if (rays.size() < packet_size) {
+    std::ranges::copy(rays, padded.begin());
+    group = padded.data();
+  }
+  PacketMask others = (PacketMask{1} << rays.size()) - 1;
+  RayPacket packet;
+  const PacketMask taken = packet.load(group, bricks.grid) & others;
+  if (std::popcount(taken) >= fewest_in_packet) {
+    PacketFrustum frustum;
+    const PacketMask live = frustum.bound(packet, bricks.grid, taken), same = frustum.same();
+    if (std::popcount(same) >= fewest_in_packet) {
+      others &= ~same;
+      Queries queries(scene, group, packet, live, probe);
+      if (live != 0) {
+        PacketWalk walk(bricks, packet, frustum, queries, probe);
+        walk.walk_grid();
+        sharing.learn(walk.leaves(), walk.rays_in_leaves());
+      }
+      queries.finish();
+      for_each_ray(same, [&](std::size_t ray) { answers[ray] = queries.answer(ray); });
+    }
+  }
+  if (others != 0) answer_others<Query>(bricks, scene, group, others, answers.data(), probe);
+}
+
+template <class Query, class Queries, class Answer, class Probe>
+HWY_INLINE void answer_batch(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
+                             std::span<Answer> all_answers, [[maybe_unused]] std::span<RayCounters> counters,
+                             Probe& probe) {
+  const FlushDenormals mode;
+  PacketSharing sharing;
+  for (std::size_t i = 0; i < batch.rays.size(); i += packet_size) {
+    const std::size_t n = std::min(packet_size, batch.rays.size() - i);
+    const auto rays = batch.rays.subspan(i, n);
+    const auto answers = all_answers.subspan(i, n);
+    if constexpr (std::is_same_v<Probe, CountingProbe>) probe.begin_rays(counters.subspan(i, n));
+    if (use == PacketUse::always || (use == PacketUse::where_worth_while && sharing.worth_while())) {
+      answer_packet<Query, Queries>(bricks, scene, rays, answers, sharing, probe);
+      continue;
+    }
+    for (std::size_t j = 0; j < n; j += at_once<Probe>) {
+      const std::size_t some = std::min(at_once<Probe>, n - j);
+      probe.select(j);
+      answer_all<Query>(bricks, scene, rays.subspan(j, some), answers.subspan(j, some), probe);
+    }
+  }
+}
+
+void trace_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
+                   std::span<Hit> hits) {
+  NoProbe probe;
+  answer_batch<ClosestHit<NoProbe>, ClosestHits<NoProbe>>(bricks, scene, batch, use, hits, {}, probe);
+}
+void trace_any(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
                std::span<std::uint8_t> occluded) {
-  const FlushDenormals mode;
   NoProbe probe;
-  for (std::size_t i = 0; i < batch.rays.size(); i += lanes) {
-    const std::size_t n = std::min(lanes, batch.rays.size() - i);
-    answer_all<AnyHit<NoProbe>>(bricks, scene, batch.rays.subspan(i, n), occluded.subspan(i, n), probe);
-  }
+  answer_batch<AnyHit<NoProbe>, AnyHits<NoProbe>>(bricks, scene, batch, use, occluded, {}, probe);
 }
-void count_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, std::span<Hit> hits,
-                   std::span<RayCounters> counters) {
-  const FlushDenormals mode;
-  CountingProbe probe(scene.primitive_count());
-  for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-    probe.begin_ray(counters[i]);
-    answer_all<ClosestHit<CountingProbe>>(bricks, scene, batch.rays.subspan(i, 1), hits.subspan(i, 1), probe);
-  }
+void count_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
+                   std::span<Hit> hits, std::span<RayCounters> counters) {
+  using Probe = CountingProbe;
+  Probe probe(scene.primitive_count());
+  answer_batch<ClosestHit<Probe>, ClosestHits<Probe>>(bricks, scene, batch, use, hits, counters, probe);
 }
-void count_any(const Bricks& bricks, const Scene& scene, const BatchView& batch,
+void count_any(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
                std::span<std::uint8_t> occluded, std::span<RayCounters> counters) {
-  const FlushDenormals mode;
-  CountingProbe probe(scene.primitive_count());
-  for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-    probe.begin_ray(counters[i]);
-    answer_all<AnyHit<CountingProbe>>(bricks, scene, batch.rays.subspan(i, 1), occluded.subspan(i, 1), probe);
-  }
+  using Probe = CountingProbe;
+  Probe probe(scene.primitive_count());
+  answer_batch<AnyHit<Probe>, AnyHits<Probe>>(bricks, scene, batch, use, occluded, counters, probe);
 }
 
 }  // namespace

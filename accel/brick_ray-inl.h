@@ -86,6 +86,20 @@ inline constexpr std::array<MirrorTables, 8> mirrors = mirror_tables();
 /// What to xor the number of a cell with, by octant.
 inline constexpr std::array<unsigned, 8> mirror_of{0, 3, 12, 15, 48, 51, 60, 63};
 
+/// A mask of cells as a ray of that octant numbers them.
+HWY_INLINE std::uint64_t mirrored(std::uint64_t mask, unsigned octant) {
+  const hn::Full128<std::uint8_t> d8;
+  const hn::Full128<std::uint64_t> d64;
+  const MirrorTables& tables = mirrors[octant];
+  const auto words = hn::Set(d64, mask);
+  const auto half = hn::Set(d8, std::uint8_t{15});
+  const auto low = hn::And(hn::BitCast(d8, words), half);
+  const auto high = hn::And(hn::BitCast(d8, hn::ShiftRight<4>(words)), half);
+  const auto rows = hn::Or(hn::TableLookupBytes(hn::Load(d8, tables.low.data()), low),
+                           hn::TableLookupBytes(hn::Load(d8, tables.high.data()), high));
+  return hn::GetLane(hn::BitCast(d64, hn::TableLookupBytes(rows, hn::Load(d8, tables.byte.data()))));
+}
+
 /// A ray made ready to be traced, in floats. All t here are for its direction scaled by a power of two to a
 /// 1-norm of 1..2.
 ///
@@ -141,20 +155,7 @@ struct BrickRay {
         cells |= bits_of(cell) << (16 * i + v * lanes);
       }
     }
-    return cells & mirrored(node.occupied);
-  }
-
-  HWY_INLINE std::uint64_t mirrored(std::uint64_t mask) const {
-    const hn::Full128<std::uint8_t> d8;
-    const hn::Full128<std::uint64_t> d64;
-    const MirrorTables& tables = mirrors[octant];
-    const auto words = hn::Set(d64, mask);
-    const auto half = hn::Set(d8, std::uint8_t{15});
-    const auto low = hn::And(hn::BitCast(d8, words), half);
-    const auto high = hn::And(hn::BitCast(d8, hn::ShiftRight<4>(words)), half);
-    const auto rows = hn::Or(hn::TableLookupBytes(hn::Load(d8, tables.low.data()), low),
-                             hn::TableLookupBytes(hn::Load(d8, tables.high.data()), high));
-    return hn::GetLane(hn::BitCast(d64, hn::TableLookupBytes(rows, hn::Load(d8, tables.byte.data()))));
+    return cells & mirrored(node.occupied, octant);
   }
 };
 

@@ -55,6 +55,12 @@ struct LeafWords {
   static std::size_t count(std::size_t triangles) {
     return TriangleRows::rows * triangles + 2 * masks(triangles);
   }
+  /// The cells that the block of triangles that begins with `first` meets, or all.
+  static std::uint64_t cells(const std::uint32_t* words, std::size_t triangles, std::size_t first) {
+    if (!has_masks(triangles)) return ~std::uint64_t{0};
+    const std::uint32_t* const mask = words + TriangleRows::rows * triangles + 2 * (first / block);
+    return mask[0] | std::uint64_t{mask[1]} << 32u;
+  }
 };
 /// The most floats that a kernel reads at once: so many words follow the last leaf.
 inline constexpr std::size_t widest_vector = 16;

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace raymeter {
@@ -20,6 +22,7 @@ struct RayCounters {
 
 /// The probe of timed code: compiles to nothing.
 struct NoProbe {
+  void select(std::size_t /*ray*/) {}
   void inner_step() {}
   void cell_step(bool /*empty*/) {}
   void test(std::uint32_t /*primitive*/) {}
@@ -29,16 +32,26 @@ struct NoProbe {
   void enter_subgrid() {}
 };
 
-/// The probe of the counted pass. One for each thread; `begin_ray` before each ray.
+/// The probe of the counted pass. One for each thread; `begin_ray` before each ray, or `begin_rays` before
+/// such as are traced together, and `select` before what one of these costs.
 class CountingProbe {
  public:
-  explicit CountingProbe(std::size_t primitive_count) : last_ray_(primitive_count, 0) {}
+  static constexpr std::size_t most_together = 16;
 
-  void begin_ray(RayCounters& counters) {
-    counters = {};
-    counters_ = &counters;
-    ++ray_;
+  explicit CountingProbe(std::size_t primitive_count) : tested_(primitive_count, 0) {}
+
+  void begin_ray(RayCounters& counters) { begin_rays({&counters, 1}); }
+  void begin_rays(std::span<RayCounters> counters) {
+    for (RayCounters& c : counters) c = {};
+    rays_ = counters;
+    ++group_;
+    select(0);
   }
+  void select(std::size_t ray) {
+    counters_ = &rays_[ray];
+    bit_ = std::uint64_t{1} << ray;
+  }
+
   void inner_step() { ++counters_->steps; }
   void cell_step(bool empty) {
     ++counters_->steps;
@@ -47,8 +60,10 @@ class CountingProbe {
   }
   void test(std::uint32_t primitive) {
     ++counters_->tests;
-    if (last_ray_[primitive] != ray_) {
-      last_ray_[primitive] = ray_;
+    std::uint64_t& tested = tested_[primitive];
+    if (tested >> most_together != group_) tested = group_ << most_together;
+    if ((tested & bit_) == 0) {
+      tested |= bit_;
       ++counters_->distinct_tests;
     }
   }
@@ -58,9 +73,10 @@ class CountingProbe {
   void enter_subgrid() { ++counters_->subgrids_entered; }
 
  private:
+  std::span<RayCounters> rays_;
   RayCounters* counters_ = nullptr;
-  std::uint64_t ray_ = 0;
-  std::vector<std::uint64_t> last_ray_;  // by primitive: the last ray that tested it
+  std::uint64_t group_ = 0, bit_ = 1;
+  std::vector<std::uint64_t> tested_;  // by primitive: the last group that tested it, and which rays of it
 };
 
 }  // namespace raymeter

@@ -9,6 +9,7 @@
 
 #include "accel/brick_ray-inl.h"
 #include "accel/triangle_rows.h"
+#include "scenes/geometry/decide.h"
 #include "scenes/geometry/vec3.h"
 
 #if HWY_TARGET != HWY_SCALAR
@@ -44,8 +45,12 @@ struct FilterInterval {
   float before, after;           ///< nothing at or below `before`, or above `after`, matters
   float inside_from, inside_to;  ///< everything between these does
 };
+/// The same, one in each lane.
+struct LaneIntervals {
+  FloatVector before, after, inside_from, inside_to;
+};
 
-/// One ray against a block of triangles, bits by lane.
+/// Rays against triangles, lane by lane: one in all lanes against several.
 struct BlockTest {
   std::uint64_t candidates = 0;  ///< the ray's line may pass through the triangle
   std::uint64_t inside = 0;      ///< it certainly does, and not through its edges
@@ -53,14 +58,15 @@ struct BlockTest {
   FloatVector edge;              ///< in TriangleRows::edge_unit
   FloatVec3 from_corner;         ///< the ray's origin, from the first corner
 
-  struct Hits {
-    std::uint64_t possible;  ///< of the candidates: t may lie in the interval
-    std::uint64_t certain;   ///< of these: passed inside, and `decide` certainly accepts it
+  /// Of |det| and of the height with its sign, with the errors of filter.h; infinite where something may have
+  /// overflowed.
+  struct Bounds {
+    FloatVector least_det, greatest_det, lowest, highest;
+    hn::Mask<Floats> steep;  ///< t is known at all
   };
-  /// What t says of the candidates, with the bounds of filter.h for det and height.
-  HWY_INLINE Hits within(const FilterInterval& interval) const {
+  HWY_INLINE Bounds bounds() const {
     const Floats d;
-    // 2^-20 edge^2, and that times the distance; infinite where something may have overflowed.
+    // 2^-20 edge^2, and that times the distance.
     constexpr float unit = TriangleRows::edge_unit;
     const FloatVector edges = hn::Mul(edge, edge);
     const FloatVector det_error = hn::Mul(edges, hn::Set(d, 0x1p-20f / (unit * unit)));
@@ -68,26 +74,67 @@ struct BlockTest {
     const FloatVector distance = hn::Add(norm_of(from_corner), hn::Set(d, filter::tiny));
     const FloatVector height_error = hn::Mul(hn::Mul(edges, distance), hn::Set(d, 0x1p-20f / (unit * unit)));
     const FloatVector positive = hn::Abs(det), along = hn::Xor(height, hn::And(det, hn::SignBit(d)));
-    const FloatVector least_det = hn::Sub(positive, det_error), greatest_det = hn::Add(positive, det_error);
-    const FloatVector lowest = hn::Sub(along, height_error), highest = hn::Add(along, height_error);
-    const auto beyond = hn::Or(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.after), greatest_det)),
-                               hn::Lt(highest, hn::Mul(hn::Set(d, interval.before), least_det)));
-    const auto steep = hn::Gt(least_det, det_error);
-    const auto between = hn::And(hn::Gt(lowest, hn::Mul(hn::Set(d, interval.inside_from), greatest_det)),
-                                 hn::Le(highest, hn::Mul(hn::Set(d, interval.inside_to), least_det)));
-    const std::uint64_t possible = candidates & ~bits_of(hn::And(steep, beyond));
-    return {possible, possible & inside & bits_of(hn::And(steep, between))};
+    const FloatVector least_det = hn::Sub(positive, det_error);
+    return {least_det, hn::Add(positive, det_error), hn::Sub(along, height_error),
+            hn::Add(along, height_error), hn::Gt(least_det, det_error)};
+  }
+
+  struct Hits {
+    std::uint64_t possible;  ///< of the candidates: t may lie in the interval
+    std::uint64_t certain;   ///< of these: passed inside, and `decide` certainly accepts it
+  };
+  /// What t says of the candidates.
+  HWY_INLINE Hits within(const LaneIntervals& interval, const Bounds& t) const {
+    const auto beyond = hn::Or(hn::Gt(t.lowest, hn::Mul(interval.after, t.greatest_det)),
+                               hn::Lt(t.highest, hn::Mul(interval.before, t.least_det)));
+    const auto between = hn::And(hn::Gt(t.lowest, hn::Mul(interval.inside_from, t.greatest_det)),
+                                 hn::Le(t.highest, hn::Mul(interval.inside_to, t.least_det)));
+    const std::uint64_t possible = candidates & ~bits_of(hn::And(t.steep, beyond));
+    return {possible, possible & inside & bits_of(hn::And(t.steep, between))};
+  }
+  HWY_INLINE Hits within(const FilterInterval& interval) const {
+    const Floats d;
+    return within({hn::Set(d, interval.before), hn::Set(d, interval.after), hn::Set(d, interval.inside_from),
+                   hn::Set(d, interval.inside_to)},
+                  bounds());
   }
 };
 
-/// The triangles first, first + 1, ... of `rows`. `reach`: an upper bound of the 1-norm from the ray's origin
-/// to some point of each triangle.
+/// Triangles, one in each lane: a corner and the edges from it to the others.
+struct LaneTriangles {
+  FloatVec3 a, e1, e2;
+};
+
+/// Rays against triangles. edge_of(): as in TriangleRows, asked for when the rest is done. `reach`: an upper
+/// bound of the 1-norm from each ray's origin to some point of its triangle. `there`: the lanes that count.
 ///
 /// Moeller & Trumbore 1997. Which side of each edge does the line pass? The error bounds are those of
-/// filter.h. What they call edge is there in the rows; what they call reach, the distance of a triangle's
-/// first corner, is at most that of any of its points and the edge.
-HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, std::uint32_t first,
-                                float reach) {
+/// filter.h. What they call reach, the distance of a triangle's first corner, is at most that of any of its
+/// points and the edge.
+template <class Edge>
+HWY_INLINE BlockTest test_lanes(const FloatVec3& origin, const FloatVec3& direction,
+                                const LaneTriangles& triangles, const Edge& edge_of, FloatVector reach,
+                                std::uint64_t there) {
+  const Floats d;
+  const FloatVec3 s = minus(origin, triangles.a);
+  const FloatVec3 p = cross_of(direction, triangles.e2), q = cross_of(s, triangles.e1);
+  const FloatVector det = dot_of(triangles.e1, p), u = dot_of(s, p), v = dot_of(direction, q);
+  const FloatVector w = hn::Sub(hn::Sub(det, u), v);
+
+  // 0x1.8p-20 * edge * (edge + 2 * (reach + edge)), infinite where something may have overflowed: nothing is
+  // rejected then, and nothing is certain.
+  const FloatVector edge = edge_of();
+  const FloatVector area =
+      hn::Mul(edge, hn::MulAdd(edge, hn::Set(d, 3 / TriangleRows::edge_unit), hn::Add(reach, reach)));
+  const FloatVector error = hn::Mul(area, hn::Set(d, 0x1.8p-20f / TriangleRows::edge_unit));
+  const FloatVector least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
+  const auto outside = hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(greatest, error));
+  const auto inside = hn::Or(hn::Gt(least, error), hn::Lt(greatest, hn::Neg(error)));
+  return {there & ~bits_of(outside), bits_of(inside), det, dot_of(triangles.e2, q), edge, s};
+}
+
+/// The triangles first, first + 1, ... of `rows`.
+HWY_INLINE LaneTriangles triangles_of(const TriangleRows& rows, std::uint32_t first) {
   const Floats d;
   const float* row = rows.row(0) + first;
   const auto next = [&] {
@@ -102,31 +149,30 @@ HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, s
     v.z = next();
     return v;
   };
-  const auto broadcast = [&](const float* v) {
-    return FloatVec3{hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
-  };
-  const FloatVec3 a = next3(), e1 = minus(next3(), a), e2 = minus(next3(), a);
-  const FloatVec3 direction = broadcast(ray.direction.data());
-  const FloatVec3 s = minus(broadcast(&ray.ray->origin.x), a);
-  const FloatVec3 p = cross_of(direction, e2), q = cross_of(s, e1);
-  const FloatVector det = dot_of(e1, p), u = dot_of(s, p), v = dot_of(direction, q);
-  const FloatVector w = hn::Sub(hn::Sub(det, u), v);
+  LaneTriangles triangles;
+  triangles.a = next3();
+  triangles.e1 = minus(next3(), triangles.a);
+  triangles.e2 = minus(next3(), triangles.a);
+  return triangles;
+}
+/// The bits of as many lanes as there are triangles from `first` on.
+HWY_INLINE std::uint64_t lanes_from(const TriangleRows& rows, std::uint32_t first) {
+  return (std::uint64_t{1} << std::min<std::size_t>(rows.count - first, lanes)) - 1;
+}
 
-  // 0x1.8p-20 * edge * (edge + 2 * (reach + edge)), infinite where something may have overflowed: nothing is
-  // rejected then, and nothing is certain.
-  const FloatVector edge = next();
-  const FloatVector area =
-      hn::Mul(edge, hn::MulAdd(edge, hn::Set(d, 3 / TriangleRows::edge_unit), hn::Set(d, 2 * reach)));
-  const FloatVector error = hn::Mul(area, hn::Set(d, 0x1.8p-20f / TriangleRows::edge_unit));
-  const FloatVector least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
-  const auto outside = hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(greatest, error));
-  const auto inside = hn::Or(hn::Gt(least, error), hn::Lt(greatest, hn::Neg(error)));
-  return {bits_of(hn::AndNot(outside, hn::FirstN(d, rows.count - first))),
-          bits_of(inside),
-          det,
-          dot_of(e2, q),
-          edge,
-          s};
+HWY_INLINE FloatVec3 in_all_lanes(const float* v) {
+  const Floats d;
+  return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
+}
+
+/// A ray against these. `reach`: an upper bound of the 1-norm from its origin to some point of each.
+HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, std::uint32_t first,
+                                float reach) {
+  const Floats d;
+  return test_lanes(
+      in_all_lanes(&ray.ray->origin.x), in_all_lanes(ray.direction.data()), triangles_of(rows, first),
+      [&] { return hn::LoadU(d, rows.row(TriangleRows::edge_row) + first); }, hn::Set(d, reach),
+      lanes_from(rows, first));
 }
 
 /// Where the ray's line meets the plane of a triangle, in double: t = height / det within the errors, det >
@@ -150,6 +196,26 @@ struct PlaneHit {
   /// Whether the errors leave something to be said.
   bool known() const { return det_error < 0x1p-10 * det; }
 };
+
+/// Whether `decide` gives a hit, for a candidate of test_block. `inside`: as of that.
+HWY_INLINE bool decide_any(const BrickRay& ray, const TriangleRows& rows, std::uint32_t column, bool inside,
+                           float reach) {
+  const Triangle triangle = rows.triangle(column);
+  const PlaneHit plane(ray, triangle, rows.edge(column), reach);
+  if (plane.known()) {
+    // Room for the rounding of t to a float.
+    constexpr double more = 1 + 0x1p-22, less = 1 - 0x1p-22;
+    const double low = plane.height - plane.height_error, high = plane.height + plane.height_error;
+    const double least_det = plane.det - plane.det_error, greatest_det = plane.det + plane.det_error;
+    const double tnear = ray.ray->tnear, tfar = ray.ray->tfar;
+    if (high < tnear * less * least_det || low > std::max(tfar, double(FLT_MIN)) * more * greatest_det)
+      return false;
+    if (inside && low > std::max(tnear, double(FLT_MIN)) * more * greatest_det &&
+        high < std::min(tfar, double(FLT_MAX)) * less * least_det)
+      return true;
+  }
+  return decide(*ray.ray, triangle) != no_hit;
+}
 
 }  // namespace raymeter::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -30,8 +30,13 @@ const char* const scenes[] = {"soup:triangles=10000",
                               "spd/teapot",
                               "spd/mount:size=5"};
 /// The instruction set that they all have: a block's size depends on it.
-const char* const structures[] = {
-    "grid", "tunable-grid", "two-level-grid", "octree", "octree:traversal=top-down", "brick-grid:isa=sse4.2"};
+const char* const structures[] = {"grid",
+                                  "tunable-grid",
+                                  "two-level-grid",
+                                  "octree",
+                                  "octree:traversal=top-down",
+                                  "brick-grid:isa=sse4.2",
+                                  "brick-grid:isa=sse4.2:query=1"};
 
 const char* const table_file = RAYMETER_TEST_DATA "/work_per_ray.csv";
 const char* const renew = "where that is meant to be, renew the table with script/renew-work-tables";

@@ -1,6 +1,6 @@
-// Builds brick-grid on small scenes and traces fixed rays with it, for callgrind to count the instructions
-// of: each build and batch is one of its dumps, and a line "scene,build,primitives" or "scene,batch,rays"
-// here (tests/script/instructions.sh).
+// Builds brick-grid on small scenes and traces fixed rays with it, one by one and the coherent ones in
+// packets, too, for callgrind to count the instructions of: each build and batch is one of its dumps, and a
+// line "scene,build,primitives" or "scene,batch,rays" here (tests/script/instructions.sh).
 #include <fmt/format.h>
 #include <valgrind/callgrind.h>
 
@@ -18,16 +18,21 @@ int main() {
     const auto batches = fixed_batches(scene);
     CALLGRIND_START_INSTRUMENTATION;
     CALLGRIND_ZERO_STATS;
-    const auto structure = registry.build(parse_spec("brick-grid:isa=avx2"), {scene});
+    const auto singly = registry.build(parse_spec("brick-grid:isa=avx2:query=1"), {scene});
     CALLGRIND_DUMP_STATS;
     fmt::print("{},build,{}\n", name, scene.primitive_count());
-    for (const RayBatch& batch : batches) {
+    const auto in_packets = registry.build(parse_spec("brick-grid:isa=avx2:query=16"), {scene});
+    const auto trace_batch = [&](const Structure& structure, const RayBatch& batch, const char* how) {
       BatchAnswers answers;
       make_room(answers, batch.view());
       CALLGRIND_ZERO_STATS;
-      trace(*structure, batch.view(), answers);
+      trace(structure, batch.view(), answers);
       CALLGRIND_DUMP_STATS;
-      fmt::print("{},{},{}\n", name, batch.name, batch.rays.size());
+      fmt::print("{},{}{},{}\n", name, batch.name, how, batch.rays.size());
+    };
+    for (const RayBatch& batch : batches) {
+      trace_batch(*singly, batch, "");
+      if (batch.coherent) trace_batch(*in_packets, batch, " in packets");
     }
     CALLGRIND_STOP_INSTRUMENTATION;
   }
