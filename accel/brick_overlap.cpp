@@ -83,13 +83,12 @@ std::uint64_t bits_of(hn::Mask<Floats> mask) {
 /// 4x4 squares, by edge functions, as in Schwarz & Seidel, "Fast Parallel Surface and Solid Voxelization on
 /// GPUs", 2010); and the triangle's plane.
 ///
-/// Everything is in units in which a cell is 1 wide and the brick begins at 0. A cell is grown, in these
-/// units, by twice its slack, of which one half pays for
-/// - a relative error of 2^-48 in what is computed in double: that is 2^-6 of the margin, as no triangle
-///   reaches farther than 2^40 of it;
-/// and by 2^-18, which pays for
-/// - floats less than eight cells away (of the box), and their coefficients and sums of two or three products
-///   with at most four cells (of edges and plane). `tiny` pays for such as are flushed to zero.
+/// Everything is in units in which a cell is 1 wide and the brick begins at 0. A cell is grown by
+/// - twice its slack: the second time for a relative error of 2^-48 in what is computed in double, which is
+///   2^-6 of the margin at most, as no triangle reaches farther than 2^40 of it;
+/// - 2^-18: for floats of places less than eight cells away (of boxes), and for coefficients in floats and
+///   their sums of two or three products with at most four cells (of edges and planes). `tiny` pays for such
+///   as are flushed to zero.
 class BrickCells {
  public:
   explicit BrickCells(const CutBrick& brick) {
@@ -108,7 +107,7 @@ class BrickCells {
   void find(const TriangleColumns& triangles, std::uint64_t* cells) {
     for (std::size_t first = 0; first < triangles.count; first += lanes) {
       const std::size_t count = std::min(lanes, triangles.count - first);
-      std::uint64_t spread = by_boxes(triangles, first, cells + first) & ((1u << count) - 1);
+      const std::uint64_t spread = by_boxes(triangles, first, cells + first) & ((1u << count) - 1);
       if (only_boxes_) continue;
       for (std::size_t i = 0; i < count; i += group) {
         constexpr std::uint64_t all = (1u << group) - 1;
@@ -205,9 +204,9 @@ class BrickCells {
         const GroupFloatVector ei = edges[c][i], ej = edges[c][j];
         const GroupFloatVector edge_reach =
             hn::Add(hn::Add(hn::Mul(hn::Abs(ei), reach[j]), hn::Mul(hn::Abs(ej), reach[i])), doubt);
+        // Columns of squares are along x; seen along x, along y.
         Edge& to = edges_[k][c];
-        hn::StoreU(hn::Xor(ej, other_sign), f,
-                   k == 1 ? to.by_row : to.by_column);  // y and x are columns, x is
+        hn::StoreU(hn::Xor(ej, other_sign), f, k == 1 ? to.by_row : to.by_column);
         hn::StoreU(hn::Xor(ei, sign), f, k == 1 ? to.by_column : to.by_row);
         hn::StoreU(hn::Sub(hn::Xor(at_origin, other_sign), edge_reach), f, to.least);
       }
