@@ -137,11 +137,12 @@ StructureKind brick_grid_kind() {
                         .default_value = "default",
                         .meaning = "instruction set; default: the widest that the CPU has",
                         .choices = {"default", "sse4.2", "avx2", "avx512"}});
-  parameters.push_back({.name = "query",
-                        .type = ParameterType::choice,
-                        .default_value = "auto",
-                        .meaning = "rays traced together; auto: 16 of a coherent batch where that is worth while, else 1",
-                        .choices = {"auto", "1", "16"}});
+  parameters.push_back(
+      {.name = "query",
+       .type = ParameterType::choice,
+       .default_value = "auto",
+       .meaning = "rays traced together; auto: 16 of a coherent batch where that is worth while, else 1",
+       .choices = {"auto", "1", "16"}});
   return {"brick-grid",
           "a coarse grid of trees of 4x4x4 bricks, walked and tested with SIMD instructions",
           "Jevans & Wyvill 1989; masks: Museth 2013; tests in blocks: Moeller & Trumbore 1997",
