@@ -7,9 +7,8 @@
 #include "accel/brick_build.h"
 #include "accel/brick_kernels.h"
 #include "accel/cell_overlap.h"
+#include "accel/isa.h"
 #include "accel/parallel.h"
-#include "scenes/base/error.h"
-#include "scenes/geometry/rounding.h"
 
 namespace raymeter {
 namespace {
@@ -44,13 +43,8 @@ class BrickGrid final : public Structure {
   BrickGrid(const BuildInput& input, std::optional<ResolutionRule> top, std::uint32_t leaf,
             const BrickKernels& kernels, const std::string& query)
       : scene_(input.scene), kernels_(kernels), query_(query), meter_(input.memory_limit), bricks_(meter_) {
-    const Bounds box = scene_.bounds();
-    bricks_.space = WalkSpace(box.empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : box, 0x1p-17);
-    for (int axis = 0; axis < 3; ++axis) bricks_.space.low[axis] = float_below(bricks_.space.low[axis]);
+    bricks_.space = float_walk_space(scene_, "brick-grid");
     bricks_.margin = std::max(bricks_.space.margin * 0x1p-17, 0x1p-100);
-    for (int axis = 0; axis < 3; ++axis)
-      if (std::max(-bricks_.space.low[axis], bricks_.space.high[axis]) > 0x1p126)
-        throw Error("brick-grid: coordinates beyond 8.5e+37 would leave the range of floats");
     const ShapeSizes sizes = shape_sizes(scene_);
     const auto limits = ResolutionLimits::within(input.memory_limit, 32 * bricks_.space.margin);
     const auto of_density = [](double value) {
@@ -116,15 +110,6 @@ class BrickGrid final : public Structure {
   StructureStats stats_;
 };
 
-const BrickKernels& kernels_for(const std::string& isa) {
-  const auto kernels = brick_kernels();
-  if (kernels.empty()) throw Error("brick-grid needs an x86 CPU with SSE4.2");
-  if (isa == "default") return *kernels.front();
-  for (const BrickKernels* const k : kernels)
-    if (k->isa == isa) return *k;
-  throw Error("brick-grid: this CPU has no " + isa);
-}
-
 }  // namespace
 
 StructureKind brick_grid_kind() {
@@ -132,11 +117,7 @@ StructureKind brick_grid_kind() {
       "density 0.02; 0.06 where nine of ten cells have a vertex, 0.004 where not one of ten has");
   parameters.push_back({"leaf", ParameterType::integer, "0",
                         "split nodes of more primitives than this; 0: where it seems to pay", 0, 1e6});
-  parameters.push_back({.name = "isa",
-                        .type = ParameterType::choice,
-                        .default_value = "default",
-                        .meaning = "instruction set; default: the widest that the CPU has",
-                        .choices = {"default", "sse4.2", "avx2", "avx512"}});
+  parameters.push_back(isa_parameter());
   parameters.push_back(
       {.name = "query",
        .type = ParameterType::choice,
@@ -152,12 +133,12 @@ StructureKind brick_grid_kind() {
             // No rule that is given has the density 0.
             const ResolutionRule given =
                 resolution_rule(arguments, {ResolutionRule::Kind::density, 0, {1, 1, 1}});
-            return std::make_unique<BrickGrid>(input,
-                                               given.kind == ResolutionRule::Kind::density && given.value == 0
-                                                   ? std::nullopt
-                                                   : std::optional(given),
-                                               static_cast<std::uint32_t>(arguments.integer("leaf")),
-                                               kernels_for(arguments.text("isa")), arguments.text("query"));
+            return std::make_unique<BrickGrid>(
+                input,
+                given.kind == ResolutionRule::Kind::density && given.value == 0 ? std::nullopt
+                                                                                : std::optional(given),
+                static_cast<std::uint32_t>(arguments.integer("leaf")),
+                kernels_for(arguments, brick_kernels()), arguments.text("query"));
           }};
 }
 

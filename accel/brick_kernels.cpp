@@ -13,9 +13,7 @@
 #include "accel/brick_packet-inl.h"
 #include "accel/brick_ray-inl.h"
 #include "accel/brick_walk-inl.h"
-#include "accel/grid_walk.h"
-#include "accel/primitive_test.h"
-#include "accel/triangle_block-inl.h"
+#include "accel/leaf_queries-inl.h"
 #include "scenes/base/float_mode.h"
 
 // Of the dozen instruction sets that Highway knows, the three between which speed differs much.
@@ -24,147 +22,10 @@ HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
 namespace {
 
-/// A leaf that a ray meets, and how far from its origin some point of each primitive may be (1-norm).
-struct Leaf {
-  TriangleRows triangles;
-  std::span<const std::uint32_t> others;
-  float reach = 0;
-  std::uint64_t pierced = 0;  ///< cells
-
-  /// Whether the block of triangles that begins with `first` may be hit.
-  bool has(std::uint32_t first) const {
-    return (pierced & LeafWords::cells(triangles.words, triangles.count, first)) != 0;
-  }
-};
-
 HWY_INLINE Leaf leaf_of(const Bricks& bricks, const BrickNode& node, float reach, std::uint64_t pierced) {
   const std::uint32_t* const words = bricks.words.data() + node.base;
   return {{words, node.triangles}, {words + LeafWords::count(node.triangles), node.others}, reach, pierced};
 }
-
-template <class Probe>
-HWY_INLINE void count_block(const TriangleRows& triangles, std::uint32_t first, Probe& probe) {
-  probe.test_block();
-  if constexpr (!std::is_same_v<Probe, NoProbe>)
-    for (std::uint32_t i = first; i < std::min<std::uint32_t>(triangles.count, first + lanes); ++i)
-      probe.test(triangles.primitive(i));
-}
-
-/// The closest hit.
-template <class Probe>
-class ClosestHit {
- public:
-  HWY_INLINE ClosestHit(const Scene& scene, const BrickRay& ray, Probe& probe)
-      : scene_(scene), ray_(ray), probe_(probe), interval_(ray) {}
-
-  /// What lies beyond doesn't matter.
-  float tmax() const { return interval_.after; }
-
-  HWY_INLINE void visit(const Leaf& leaf) {
-    for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
-      if (!leaf.has(first)) continue;
-      count_block(leaf.triangles, first, probe_);
-      const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
-      if (test.candidates == 0) continue;
-      std::uint64_t candidates = test.within(interval_).possible;
-      for (; candidates != 0; candidates &= candidates - 1) {
-        const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        const std::uint32_t primitive = leaf.triangles.primitive(first + lane);
-        if (primitive != best_.primitive)
-          consider(primitive, leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach);
-      }
-    }
-    if (!leaf.others.empty()) visit_others(leaf.others);
-  }
-  static constexpr bool done() { return false; }
-  Hit answer() const { return best_; }
-
- private:
-  HWY_INLINE void consider(std::uint32_t primitive, const TriangleRows& triangles, std::uint32_t column,
-                           bool inside, float reach) {
-    const Triangle triangle = triangles.triangle(column);
-    const PlaneHit plane(ray_, triangle, triangles.edge(column), reach);
-    const Ray& ray = *ray_.ray;
-    if (plane.known()) {
-      const double inverse = 1 / plane.det, t = plane.height * inverse;
-      const double error =
-          1.01 * (plane.height_error + std::abs(t) * plane.det_error) * inverse + 0x1p-50 * std::abs(t);
-      const float low = rounded(t - error), high = rounded(t + error);
-      if (low > std::min(best_.t, ray.tfar) || high <= ray.tnear) return;
-      if (low == high && inside) {
-        probe_.decide();
-        return take(within(ray, low), primitive);
-      }
-    }
-    probe_.decide();
-    take(decide(ray, triangle), primitive);
-  }
-  HWY_INLINE void take(float t, std::uint32_t primitive) {
-    if (t == no_hit || !(Hit{t, primitive} < best_)) return;
-    best_ = {t, primitive};
-    interval_.after = ray_.scaled_up(t);
-  }
-  HWY_NOINLINE void visit_others(std::span<const std::uint32_t> others) {
-    const FilterRay filter(*ray_.ray);
-    for (const std::uint32_t primitive : others) test_closest(scene_, primitive, filter, best_, probe_);
-    if (best_.found()) interval_.after = ray_.scaled_up(best_.t);
-  }
-
-  const Scene& scene_;
-  const BrickRay& ray_;
-  Probe& probe_;
-  FilterInterval interval_;
-  Hit best_;
-};
-
-/// Whether there is any hit.
-template <class Probe>
-class AnyHit {
- public:
-  HWY_INLINE AnyHit(const Scene& scene, const BrickRay& ray, Probe& probe)
-      : scene_(scene), ray_(ray), probe_(probe), interval_(ray) {}
-
-  float tmax() const { return interval_.after; }
-
-  HWY_INLINE void visit(const Leaf& leaf) {
-    for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
-      if (!leaf.has(first)) continue;
-      count_block(leaf.triangles, first, probe_);
-      const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
-      if (test.candidates == 0) continue;
-      const auto [possible, certain] = test.within(interval_);
-      if (certain != 0) return found();
-      for (std::uint64_t candidates = possible; candidates != 0; candidates &= candidates - 1) {
-        const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        probe_.decide();
-        if (decide_any(ray_, leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach))
-          return found();
-      }
-    }
-    if (!leaf.others.empty()) visit_others(leaf.others);
-  }
-  bool done() const { return hit_; }
-  std::uint8_t answer() const { return hit_; }
-
- private:
-  /// Nothing else matters.
-  HWY_INLINE void found() {
-    hit_ = true;
-    interval_.after = -std::numeric_limits<float>::infinity();
-  }
-  HWY_NOINLINE void visit_others(std::span<const std::uint32_t> others) {
-    const FilterRay filter(*ray_.ray);
-    for (std::size_t i = 0; i < others.size() && !hit_; ++i)
-      hit_ = test_any(scene_, others[i], filter, probe_);
-    if (hit_) found();
-  }
-
-  const Scene& scene_;
-  const BrickRay& ray_;
-  Probe& probe_;
-  FilterInterval interval_;
-  bool hit_ = false;
-};
 
 /// Visits the leaves below a root that the ray meets, front to back.
 class TreeWalk {
@@ -220,62 +81,6 @@ class TreeWalk {
   Level stack_[deepest_brick + 1];
 };
 
-/// A query of a ray, asked by the same ray with its origin moved along.
-template <class Query>
-class MovedQuery {
- public:
-  /// `moved` begins where `ray` is at t = `by` of its given direction.
-  MovedQuery(Query& query, const BrickRay& ray, double by)
-      : query_(query), by_(by * ray.scale), moved_(2 * (1 + 0x1p-20f) * static_cast<float>(by_)) {}
-  float tmax() const { return -float_below(by_ - double(query_.tmax())) * (1 + 0x1p-20f); }
-  void visit(const Leaf& leaf) {
-    query_.visit({leaf.triangles, leaf.others, leaf.reach + moved_, leaf.pierced});
-  }
-  bool done() const { return query_.done(); }
-
- private:
-  Query& query_;
-  double by_;    // in scaled t
-  float moved_;  // the 1-norm
-};
-
-/// For a ray that BrickWalk is not proved for: from where it enters the scene, if that is all, else without a
-/// walk.
-template <class Query, class Answer, class Probe>
-HWY_NOINLINE Answer answer_special(const Bricks& bricks, const Scene& scene, const Ray& ray, Probe& probe) {
-  if (!is_traceable(ray)) return {};
-  const WalkRay walk(ray);
-  if (!too_far(walk, bricks.space)) {
-    const WalkInterval interval = clip(walk, ray, bricks.space.low, bricks.space.high);
-    if (interval.empty()) return {};
-    Ray moved = ray;
-    moved.origin = to_float(walk.origin + interval.enter * walk.direction);
-    if (moved.tnear > 0) moved.tnear = 0;
-    moved.tfar = std::numeric_limits<float>::infinity();
-    BrickWalk bricks_walk(bricks, {&moved, 1});
-    if (bricks_walk.taken() != 0) {
-      BrickRay unmoved = bricks_walk.ray(0);
-      unmoved.ray = &ray;
-      Query query(scene, unmoved, probe);
-      MovedQuery<Query> moved_query(query, unmoved, interval.enter);
-      alignas(64) std::array<float, lanes> tmax{};
-      while (bricks_walk.find_roots(probe) != 0) {
-        TreeWalk tree;
-        tree.begin(&bricks.nodes[bricks_walk.root(0)], bricks_walk.reach(0));
-        while (tree.step(bricks, bricks_walk.ray(0), bricks_walk.tnear(0), moved_query, probe)) {
-        }
-        tmax[0] = moved_query.tmax();
-        bricks_walk.leave_roots(tmax);
-      }
-      return query.answer();
-    }
-  }
-  if constexpr (std::is_same_v<Answer, Hit>)
-    return closest_of_all(scene, ray, probe);
-  else
-    return any_of_all(scene, ray, probe);
-}
-
 /// Answers as many rays as there are lanes, or fewer. A probe counts them as if they were one.
 template <class Query, class Answer, class Probe>
 HWY_INLINE void answer_all(const Bricks& bricks, const Scene& scene, std::span<const Ray> rays,
@@ -310,7 +115,13 @@ HWY_INLINE void answer_all(const Bricks& bricks, const Scene& scene, std::span<c
   const std::uint64_t all = ~std::uint64_t{0} >> (64 - rays.size());
   for (std::uint64_t rest = all & ~walk.taken(); rest != 0; rest &= rest - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-    answers[lane] = answer_special<Query, Answer>(bricks, scene, rays[lane], probe);
+    answers[lane] = answer_special<Query, Answer>(
+        bricks, scene, rays[lane], probe, [&](const BrickWalk& special, auto& query) {
+          TreeWalk tree;
+          tree.begin(&bricks.nodes[special.root(0)], special.reach(0));
+          while (tree.step(bricks, special.ray(0), special.tnear(0), query, probe)) {
+          }
+        });
   }
 }
 

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "accel/brick_ray-inl.h"
+#include "accel/leaf_grid.h"
 #include "accel/probe.h"
 
 #if HWY_TARGET != HWY_SCALAR
@@ -29,12 +30,72 @@ class BrickWalk {
  public:
   /// At most as many rays as there are lanes. They must outlive this.
   HWY_INLINE BrickWalk(const Bricks& bricks, std::span<const Ray> rays)
-      : roots_(reinterpret_cast<const std::int32_t*>(bricks.roots.data())),
-        boxes_(reinterpret_cast<const std::int32_t*>(bricks.root_boxes.data())),
-        cell_reach_(bricks.grid.cell_reach) {
+      : BrickWalk(bricks.grid, bricks.roots.data(), bricks.root_boxes.data(), rays) {}
+  HWY_INLINE BrickWalk(const LeafGrid& grid, std::span<const Ray> rays)
+      : BrickWalk(grid.grid, grid.leaves.data(), nullptr, rays) {}
+
+  /// The set of rays that this is proved for, by bits: not those that start far away, or look behind their
+  /// origin, or whose direction would leave the range of floats. The others are not walked.
+  std::uint64_t taken() const { return taken_; }
+  const BrickRay& ray(std::size_t lane) const { return rays_[lane]; }
+
+  float tnear(std::size_t lane) const { return tnear_[lane]; }
+
+  /// Takes the rays that stand in cells without a root on to one with, or out. Returns the set of those that
+  /// are in.
+  template <class Probe>
+  HWY_INLINE std::uint64_t find_roots(Probe& probe) {
+    const Integers di;
+    const Floats d;
+    Place place = place_;  // in registers
+    auto found = hn::FirstN(d, 0);
+    while (true) {
+      const auto without = hn::RebindMask(d, hn::Eq(place.root, hn::Set(di, no_root)));
+      auto on = hn::And(place.walking, without);
+      if (!hn::AllFalse(d, on)) {
+        if constexpr (!std::is_same_v<Probe, NoProbe>)
+          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.cell_step(true);
+      } else {
+        if (boxes_ == nullptr) break;
+        // All are at roots. Those that pass by a root's box go on, too.
+        const auto arrived = hn::AndNot(found, place.walking);
+        if (hn::AllFalse(d, arrived)) break;
+        on = hn::AndNot(meets_root(place), arrived);
+        found = hn::AndNot(on, place.walking);
+        if constexpr (!std::is_same_v<Probe, NoProbe>)
+          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.inner_step();
+      }
+      advance(place, on);
+    }
+    place_ = place;
+    hn::Store(place.root, di, root_of_.data());
+    // No point of the cell is farther from the origin than where the ray leaves it, and a cell's size.
+    const FloatVector leave = hn::Min(hn::Min(next(place, 0), next(place, 1)), next(place, 2));
+    hn::Store(hn::MulAdd(leave, hn::Set(d, 2 * (1 + 0x1p-15f)), hn::Set(d, cell_reach_)), d,
+              reach_of_.data());
+    return bits_of(place.walking);
+  }
+  /// Of the present cell.
+  std::uint32_t root(std::size_t lane) const { return static_cast<std::uint32_t>(root_of_[lane]); }
+  /// An upper bound of the 1-norm from the ray's origin to any point of the present cell or a margin around.
+  float reach(std::size_t lane) const { return reach_of_[lane]; }
+
+  /// Takes all rays that are in on to the next cell, or out, if nothing matters there beyond tmax.
+  HWY_INLINE void leave_roots(const std::array<float, lanes>& tmax) {
+    end_ = hn::Min(end_, hn::Load(Floats(), tmax.data()));
+    advance(place_, place_.walking);
+  }
+
+ private:
+  /// `roots`: by cell, whatever they number; no_root where there is none. `boxes`: of the roots, by cell, or
+  /// null.
+  HWY_INLINE BrickWalk(const FloatGrid& grid, const std::uint32_t* roots, const RootBox* boxes,
+                       std::span<const Ray> rays)
+      : roots_(reinterpret_cast<const std::int32_t*>(roots)),
+        boxes_(reinterpret_cast<const std::int32_t*>(boxes)),
+        cell_reach_(grid.cell_reach) {
     const Floats d;
     const Integers di;
-    const FloatGrid& grid = bricks.grid;
     // One row for each number of a ray.
     alignas(64) std::array<std::array<float, lanes>, 8> rows;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -114,65 +175,14 @@ class BrickWalk {
                      static_cast<unsigned>(octants[lane])};
   }
 
-  /// The set of rays that this is proved for, by bits: not those that start far away, or look behind their
-  /// origin, or whose direction would leave the range of floats. The others are not walked.
-  std::uint64_t taken() const { return taken_; }
-  const BrickRay& ray(std::size_t lane) const { return rays_[lane]; }
-
-  float tnear(std::size_t lane) const { return tnear_[lane]; }
-
-  /// Takes the rays that stand in cells without a root on to one with, or out. Returns the set of those that
-  /// are in.
-  template <class Probe>
-  HWY_INLINE std::uint64_t find_roots(Probe& probe) {
-    const Integers di;
-    const Floats d;
-    Place place = place_;  // in registers
-    auto found = hn::FirstN(d, 0);
-    while (true) {
-      const auto without = hn::RebindMask(d, hn::Eq(place.root, hn::Set(di, no_root)));
-      auto on = hn::And(place.walking, without);
-      if (!hn::AllFalse(d, on)) {
-        if constexpr (!std::is_same_v<Probe, NoProbe>)
-          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.cell_step(true);
-      } else {
-        // All are at roots. Those that pass by a root's box go on, too.
-        const auto arrived = hn::AndNot(found, place.walking);
-        if (hn::AllFalse(d, arrived)) break;
-        on = hn::AndNot(meets_root(place), arrived);
-        found = hn::AndNot(on, place.walking);
-        if constexpr (!std::is_same_v<Probe, NoProbe>)
-          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.inner_step();
-      }
-      advance(place, on);
-    }
-    place_ = place;
-    hn::Store(place.root, di, root_of_.data());
-    // No point of the cell is farther from the origin than where the ray leaves it, and a cell's size.
-    const FloatVector leave = hn::Min(hn::Min(next(place, 0), next(place, 1)), next(place, 2));
-    hn::Store(hn::MulAdd(leave, hn::Set(d, 2 * (1 + 0x1p-15f)), hn::Set(d, cell_reach_)), d,
-              reach_of_.data());
-    return bits_of(place.walking);
-  }
-  /// Of the present cell.
-  std::uint32_t root(std::size_t lane) const { return static_cast<std::uint32_t>(root_of_[lane]); }
-  /// An upper bound of the 1-norm from the ray's origin to any point of the present cell or a margin around.
-  float reach(std::size_t lane) const { return reach_of_[lane]; }
-
-  /// Takes all rays that are in on to the next cell, or out, if nothing matters there beyond tmax.
-  HWY_INLINE void leave_roots(const std::array<float, lanes>& tmax) {
-    end_ = hn::Min(end_, hn::Load(Floats(), tmax.data()));
-    advance(place_, place_.walking);
-  }
-
- private:
   struct Place {
     FloatVector index[3];  // of the planes ahead
     IntegerVector cell, root;
     hn::Mask<Floats> walking;  // who is in
   };
   static constexpr std::int32_t no_root = -1;
-  static_assert(static_cast<std::uint32_t>(no_root) == Bricks::empty_cell);
+  static_assert(static_cast<std::uint32_t>(no_root) == Bricks::empty_cell &&
+                static_cast<std::uint32_t>(no_root) == LeafGrid::empty_cell);
 
   /// Whether the box of the present cell's root lies on the way.
   HWY_INLINE hn::Mask<Floats> meets_root(const Place& place) const {

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/base/error.h"
+#include "scenes/geometry/rounding.h"
+
 namespace raymeter {
 
 FloatGrid::FloatGrid(const CellGrid& grid) {
@@ -28,6 +31,17 @@ FloatGrid::FloatGrid(const CellGrid& grid) {
     stride[a] = cells;
     cells *= static_cast<std::int32_t>(grid.n[a]);
   }
+}
+
+WalkSpace float_walk_space(const Scene& scene, const std::string& structure) {
+  const Bounds box = scene.bounds();
+  WalkSpace space(box.empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : box, 0x1p-17);
+  for (int axis = 0; axis < 3; ++axis) {
+    space.low[axis] = float_below(space.low[axis]);
+    if (std::max(-space.low[axis], space.high[axis]) > 0x1p126)
+      throw Error(structure + ": coordinates beyond 8.5e+37 would leave the range of floats");
+  }
+  return space;
 }
 
 }  // namespace raymeter

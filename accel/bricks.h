@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "accel/cell_grid.h"
 #include "accel/memory_meter.h"
 #include "accel/triangle_rows.h"
 #include "accel/walk_space.h"
+#include "scenes/scene.h"
 
 namespace raymeter {
 
@@ -93,6 +95,10 @@ struct FloatGrid {
   /// `grid` begins at a float on each axis.
   explicit FloatGrid(const CellGrid& grid);
 };
+
+/// The space of a scene that BrickWalk goes through: grown by the margin that it needs, and begun at a float
+/// on each axis. Throws Error, naming the structure, where coordinates would leave the range of floats.
+WalkSpace float_walk_space(const Scene& scene, const std::string& structure);
 
 /// A uniform grid whose occupied cells each hold a tree of bricks.
 struct Bricks {

@@ -109,8 +109,8 @@ struct LaneTriangles {
 /// bound of the 1-norm from each ray's origin to some point of its triangle. `there`: the lanes that count.
 ///
 /// Moeller & Trumbore 1997. Which side of each edge does the line pass? The error bounds are those of
-/// filter.h. What they call reach, the distance of a triangle's first corner, is at most that of any of its
-/// points and the edge.
+/// filter.h. What they call reach, the distance of a triangle's first corner, is at most that of any
+/// point of its bounding box and twice the edge.
 template <class Edge>
 HWY_INLINE BlockTest test_lanes(const FloatVec3& origin, const FloatVec3& direction,
                                 const LaneTriangles& triangles, const Edge& edge_of, FloatVector reach,
@@ -121,11 +121,11 @@ HWY_INLINE BlockTest test_lanes(const FloatVec3& origin, const FloatVec3& direct
   const FloatVector det = dot_of(triangles.e1, p), u = dot_of(s, p), v = dot_of(direction, q);
   const FloatVector w = hn::Sub(hn::Sub(det, u), v);
 
-  // 0x1.8p-20 * edge * (edge + 2 * (reach + edge)), infinite where something may have overflowed: nothing is
-  // rejected then, and nothing is certain.
+  // 0x1.8p-20 * edge * (edge + 2 * (reach + 2 * edge)), infinite where something may have overflowed: nothing
+  // is rejected then, and nothing is certain.
   const FloatVector edge = edge_of();
   const FloatVector area =
-      hn::Mul(edge, hn::MulAdd(edge, hn::Set(d, 3 / TriangleRows::edge_unit), hn::Add(reach, reach)));
+      hn::Mul(edge, hn::MulAdd(edge, hn::Set(d, 5 / TriangleRows::edge_unit), hn::Add(reach, reach)));
   const FloatVector error = hn::Mul(area, hn::Set(d, 0x1.8p-20f / TriangleRows::edge_unit));
   const FloatVector least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
   const auto outside = hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(greatest, error));
@@ -165,7 +165,8 @@ HWY_INLINE FloatVec3 in_all_lanes(const float* v) {
   return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
 }
 
-/// A ray against these. `reach`: an upper bound of the 1-norm from its origin to some point of each.
+/// A ray against these. `reach`: an upper bound of the 1-norm from its origin to some point of each one's
+/// bounding box.
 HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, std::uint32_t first,
                                 float reach) {
   const Floats d;
@@ -191,7 +192,7 @@ struct PlaneHit {
     constexpr double error = 10 * 0x1p-53;
     const double area_error = error * edge * edge;
     det_error = area_error * (2 * double(ray.scale));
-    height_error = area_error * (reach + edge);
+    height_error = area_error * (reach + 2 * edge);
   }
   /// Whether the errors leave something to be said.
   bool known() const { return det_error < 0x1p-10 * det; }

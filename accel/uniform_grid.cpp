@@ -5,7 +5,9 @@
 #include "accel/cell_query.h"
 #include "accel/grid_resolution.h"
 #include "accel/grid_walk.h"
+#include "accel/leaf_grid.h"
 #include "accel/per_ray_structure.h"
+#include "scenes/base/error.h"
 
 namespace raymeter {
 namespace {
@@ -75,16 +77,20 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
 }  // namespace
 
 StructureKind grid_kind() {
+  auto parameters = leaf_parameters();
+  parameters.insert(parameters.begin(),
+                    {"amount", ParameterType::number, "1",
+                     "relative subdivision amount: n_a = round(amount L_a / m_a)", 1e-3, 1e3});
   return {"grid",
           "the paper's heuristic grid: cells as large as the mean bounding box",
           "Sakai, Watanabe, Miyoshi, Fukuda, early 1990s; walk: Fujimoto et al. 1986, Amanatides & Woo 1987; "
           "lists: Lagae & Dutre 2008",
           Answers::exact,
-          {{"amount", ParameterType::number, "1",
-            "relative subdivision amount: n_a = round(amount L_a / m_a)", 1e-3, 1e3}},
+          std::move(parameters),
           [](const Arguments& arguments, const BuildInput& input) -> std::unique_ptr<Structure> {
             Options options;
             options.rule = {ResolutionRule::Kind::amount, arguments.number("amount")};
+            if (auto simd = build_leaf_grid(arguments, input, options.rule, options.fit)) return simd;
             return std::make_unique<UniformGrid>(input, options);
           }};
 }
@@ -95,6 +101,7 @@ StructureKind tunable_grid_kind() {
   parameters.push_back(
       {"mailbox", ParameterType::flag, "off",
        "remember the last primitives that a ray tested (8 slots), and don't test them again"});
+  for (Parameter& parameter : leaf_parameters()) parameters.push_back(std::move(parameter));
   return {"tunable-grid",
           "a uniform grid with every knob free",
           "Fujimoto et al. 1986, Amanatides & Woo 1987, Lagae & Dutre 2008; exact fit: Akenine-Moeller 2001; "
@@ -106,6 +113,9 @@ StructureKind tunable_grid_kind() {
             options.rule = resolution_rule(arguments, {ResolutionRule::Kind::density, 4});
             options.fit = fit_of(arguments);
             options.mailbox = arguments.flag("mailbox");
+            if (options.mailbox && arguments.text("leaf") == "simd")
+              throw Error("tunable-grid: mailbox=on goes with leaf=scalar only");
+            if (auto simd = build_leaf_grid(arguments, input, options.rule, options.fit)) return simd;
             return std::make_unique<UniformGrid>(input, options);
           }};
 }

@@ -55,8 +55,9 @@ TEST(PeakMemory, IsWhatTheBuildTakesFromTheSystem) {
   for (const char* name :
        {"soup:triangles=40000", "clusters:objects=40000", "clusters:objects=20000:primitive=cone"}) {
     const Scene scene = open_scene(name);
-    for (const char* spec : {"grid", "tunable-grid", "octree", "octree:traversal=top-down:leaf=1",
-                             "two-level-grid", "two-level-grid:threshold=1", "brick-grid"}) {
+    for (const char* spec :
+         {"grid", "tunable-grid", "octree", "octree:traversal=top-down:leaf=1", "two-level-grid",
+          "two-level-grid:threshold=1", "brick-grid", "grid:leaf=simd"}) {
       const std::int64_t before = live;
       most = before;
       const auto structure = build(spec, scene);

@@ -52,12 +52,12 @@ void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
   const TriangleRows rows{words, static_cast<std::uint32_t>(claims.size())};
   float reach = 0;
   for (std::uint32_t i = 0; i < rows.count; ++i) {
-    // The least that it may be: of the nearest corners the farthest.
-    const Triangle triangle = rows.triangle(i);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec3& corner : {triangle.a, triangle.b, triangle.c}) {
-      const Vec3d away = to_double(filter.ray.origin) - to_double(corner);
-      nearest = std::min(nearest, std::abs(away.x) + std::abs(away.y) + std::abs(away.z));
+    // The least that it may be: of the nearest points of the boxes, the farthest.
+    const Bounds box = bounds_of(rows.triangle(i));
+    double nearest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = filter.ray.origin[axis];
+      nearest += std::max({0.0, box.low[axis] - at, at - box.high[axis]});
     }
     reach = std::max(reach, -float_below(-nearest));
   }

@@ -26,6 +26,8 @@ const std::vector<std::string> all_specs{"grid",
                                          "two-level-grid:threshold=0:leaf-density=50",
                                          "brick-grid",
                                          "brick-grid:cells=1:leaf=1",
+                                         "grid:leaf=simd",
+                                         "tunable-grid:amount=0.5:leaf=simd",
                                          "counted-bvh",
                                          "brute-force"};
 
