@@ -193,7 +193,7 @@ TEST(BrickPacketCounts, TellWhatIsTracedTogether) {
   Random random(1);
   std::vector<Ray> rays;
   for (int i = 0; i < 64; ++i)
-    rays.push_back({eye, 0, {random.uniform(-0.01f, 0.01f), random.uniform(-0.01f, 0.01f), -1}});
+    rays.push_back({eye, 0, {random.uniform(-1e-3f, 1e-3f), random.uniform(-1e-3f, 1e-3f), -1}});
   const auto steps = [&](const char* query, bool coherent) {
     std::uint64_t sum = 0;
     BatchView batch{rays};
