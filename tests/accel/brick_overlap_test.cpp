@@ -297,7 +297,7 @@ TEST(BrickOverlap, CountsBits) {
   for (std::uint64_t& mask : masks) {
     mask = std::uint64_t{random.bits()} << 32 | random.bits();
     if (random.below(20) != 0) mask |= 1u << 5;
-    for (std::size_t i = 0; i < 64; ++i) expected[i] += mask >> i & 1u;
+    for (std::size_t i = 0; i < 64; ++i) expected[i] += static_cast<std::uint32_t>(mask >> i & 1u);
   }
   for (const BrickOverlap& overlap : brick_overlaps()) {
     std::array<std::uint32_t, 64> counts{};
