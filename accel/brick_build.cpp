@@ -343,6 +343,7 @@ struct Part {
   /// Of triangles in the order in which they are to be tested; `cells`: of each.
   void make_leaf(BrickNode& leaf, std::span<const std::uint32_t> triangles,
                  std::span<const std::uint64_t> cells, std::span<const std::uint32_t> others) {
+    words = LeafWords::begin(words, triangles.size());
     leaf.base = static_cast<std::uint32_t>(words);
     leaf.triangles = static_cast<std::uint32_t>(triangles.size());
     leaf.others = static_cast<std::uint32_t>(others.size());
@@ -363,12 +364,16 @@ struct Part {
   [[noreturn]] static void refuse() { throw Error("brick-grid: more than 16 GiB of leaves"); }
 
   /// Writes the words of all leaves, at their place.
-  void write_leaves(const Scene& scene, std::uint32_t* to) const {
+  void write_leaves(const Scene& scene, std::uint32_t* first) const {
+    std::uint32_t* to = first;
     const std::uint32_t* next = primitives.data();
     const std::uint64_t* mask = masks.data();
     for (const Leaf& leaf : leaves) {
+      std::uint32_t* const begin =
+          first + LeafWords::begin(static_cast<std::uint64_t>(to - first), leaf.triangles);
+      to = std::fill_n(to, begin - to, 0u);
       for (std::uint32_t i = 0; i < leaf.triangles; ++i)
-        TriangleRows::put(to, leaf.triangles, i, scene.triangle(next[i]), next[i]);
+        LeafWords::put(to, leaf.triangles, i, scene.triangle(next[i]), next[i]);
       next += leaf.triangles;
       to += TriangleRows::rows * leaf.triangles;
       for (std::size_t i = 0; i < LeafWords::masks(leaf.triangles); ++i, ++mask) {
@@ -679,10 +684,11 @@ void build_bricks(const Scene& scene, const BrickOptions& options, MemoryMeter& 
   });
 
   // All together, the large nodes first.
-  std::vector<Place> places{{large.part.nodes.size(), large.part.words}};
+  std::vector<Place> places{{large.part.nodes.size(), LeafWords::begin(large.part.words, LeafWords::block)}};
   bricks.depth = large.part.depth;
   for (const Part& part : parts) {
-    places.push_back({places.back().node + part.nodes.size(), places.back().word + part.words});
+    places.push_back({places.back().node + part.nodes.size(),
+                      LeafWords::begin(places.back().word + part.words, LeafWords::block)});
     bricks.depth = std::max(bricks.depth, part.depth);
   }
   const Place end = places.back();

@@ -24,7 +24,7 @@ namespace {
 
 HWY_INLINE Leaf leaf_of(const Bricks& bricks, const BrickNode& node, float reach, std::uint64_t pierced) {
   const std::uint32_t* const words = bricks.words.data() + node.base;
-  return {{words, node.triangles}, {words + LeafWords::count(node.triangles), node.others}, reach, pierced};
+  return {words, node.triangles, {words + LeafWords::count(node.triangles), node.others}, reach, pierced};
 }
 
 /// Visits the leaves below a root that the ray meets, front to back.
@@ -44,11 +44,11 @@ class TreeWalk {
     const std::uint64_t cells = ray.pierced(node, tnear, query.tmax());
     if (cells != 0 && node.is_leaf()) {
       probe.cell_step(false);
-      query.visit(leaf_of(bricks, node, reach_, mirrored(cells, ray.octant)));
+      query.visit(leaf_of(bricks, node, reach_, cells));
       if (query.done()) return false;
     } else {
       probe.inner_step();
-      if (cells != 0) stack_[depth_++] = {cells, &node, query.tmax()};
+      if (cells != 0) stack_[depth_++] = {mirrored(cells, ray.octant), &node, query.tmax()};
     }
     // The next cell of the innermost brick that has one left; after a hit, only of those before it.
     while (true) {
@@ -56,7 +56,7 @@ class TreeWalk {
       Level& level = stack_[depth_ - 1];
       if (level.rest != 0 && level.tmax != query.tmax()) {
         level.tmax = query.tmax();
-        level.rest &= ray.pierced(*level.node, tnear, level.tmax);
+        level.rest &= mirrored(ray.pierced(*level.node, tnear, level.tmax), ray.octant);
       }
       if (level.rest != 0) break;
       --depth_;
@@ -89,11 +89,8 @@ HWY_INLINE void answer_all(const Bricks& bricks, const Scene& scene, std::span<c
   alignas(Query) std::array<std::byte, sizeof(Query) * lanes> storage;
   Query* const queries = reinterpret_cast<Query*>(storage.data());
   for (std::size_t i = 0; i < rays.size(); ++i) new (&queries[i]) Query(scene, walk.ray(i), probe);
-  alignas(64) std::array<float, lanes> tmax{};
   std::array<TreeWalk, lanes> trees;
-  while (true) {
-    const std::uint64_t rest = walk.find_roots(probe);
-    if (rest == 0) break;
+  while (const std::uint64_t rest = walk.next_roots(probe)) {
     for (std::uint64_t r = rest; r != 0; r &= r - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(r));
       trees[lane].begin(&bricks.nodes[walk.root(lane)], walk.reach(lane));
@@ -107,9 +104,8 @@ HWY_INLINE void answer_all(const Bricks& bricks, const Scene& scene, std::span<c
     }
     for (std::uint64_t r = rest; r != 0; r &= r - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(r));
-      tmax[lane] = queries[lane].tmax();
+      walk.end(lane, queries[lane].tmax());
     }
-    walk.leave_roots(tmax);
   }
   for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = queries[i].answer();
   const std::uint64_t all = ~std::uint64_t{0} >> (64 - rays.size());

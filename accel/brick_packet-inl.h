@@ -126,7 +126,7 @@ class ClosestHits : public PacketQuery<Probe> {
       pending_least_.set(v, better, least);
       packet_.after.set(v, better, greatest);
     }
-    const PacketMask inside = packet_bits(test.inside, v);
+    const PacketMask inside = packet_bits(test.inside(), v);
     for_each_ray(packet_bits(possible & ~(certain & (first | late)), v),
                  [&](std::size_t ray) { decide_on(ray, block, i, inside >> ray & 1u); });
   }
@@ -150,7 +150,7 @@ class ClosestHits : public PacketQuery<Probe> {
         }
         if (least[i] > packet_.after[ray]) continue;
       }
-      decide_on(ray, block, i, test.inside >> i & 1u);
+      decide_on(ray, block, i, test.inside() >> i & 1u);
     }
   }
   HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
@@ -249,7 +249,7 @@ class AnyHits : public PacketQuery<Probe> {
     const auto [possible, certain] = test.within(packet_.intervals(v), test.bounds());
     hit(packet_bits(certain, v));
     const PacketMask open = packet_bits(possible & ~certain, v);
-    if (open != 0) decide_on(open, block, i, packet_bits(test.inside, v));
+    if (open != 0) decide_on(open, block, i, packet_bits(test.inside(), v));
   }
   HWY_INLINE void consider_ray(const PacketBlock& block, std::size_t ray, const BlockTest& test) {
     const PacketMask one = PacketMask{1} << ray;
@@ -257,7 +257,7 @@ class AnyHits : public PacketQuery<Probe> {
     if (certain != 0) return hit(one);
     for (std::uint64_t rest = possible; rest != 0 && (live_ & one) != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      decide_on(one, block, i, test.inside >> i & 1u ? one : 0);
+      decide_on(one, block, i, test.inside() >> i & 1u ? one : 0);
     }
   }
   HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
@@ -461,11 +461,12 @@ class PacketWalk {
 
   HWY_INLINE void visit(const BrickNode& leaf, PacketMask active, std::uint64_t pierced) {
     const std::uint32_t* const words = bricks_.words.data() + leaf.base;
-    const TriangleRows rows{words, leaf.triangles};
-    for (std::uint32_t first = 0; first < rows.count; first += lanes) {
-      if ((pierced & LeafWords::cells(words, leaf.triangles, first)) == 0) continue;
+    for (std::uint32_t i = 0; i < leaf.triangles; i += lanes) {
+      const std::uint32_t first = i % LeafWords::block, begin = i - first;
+      if ((pierced & LeafWords::cells(words, leaf.triangles, begin)) == 0) continue;
       active &= query_.live();
       const auto rays = static_cast<std::size_t>(std::popcount(active));
+      const TriangleRows rows = LeafWords::rows(words, leaf.triangles, begin);
       const PacketBlock block(rows, first);
       const LaneTriangles triangles = triangles_of(rows, first);
       std::uint64_t kept = lanes_from(rows, first);

@@ -37,26 +37,32 @@ HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
   return bits;
 }
 
-/// Which planes bound the cells of a brick for a ray, as numbers to multiply with the size of a cell. Cells
-/// are numbered from the corner where the ray comes from. Lane x + 4 y stands for a column of cells along z.
+/// Through which planes a ray enters and leaves the cells of a brick, as numbers to multiply with the size of
+/// a cell. Lane x + 4 y stands for a column of cells along z.
 struct PlaneTables {
   alignas(64) std::array<float, 16> x_enter{}, x_leave{}, y_enter{}, y_leave{};
-  std::array<float, 5> z{};
+  std::array<float, 4> z_enter{}, z_leave{};
 };
 constexpr std::array<PlaneTables, 8> plane_tables() {
   std::array<PlaneTables, 8> tables{};
   for (unsigned down = 0; down < 8; ++down) {
     PlaneTables& t = tables[down];
-    const auto plane = [&](unsigned axis, std::size_t i) {
-      return static_cast<float>(down >> axis & 1u ? 4 - i : i);
+    const auto enter = [&](unsigned axis, std::size_t i) {
+      return static_cast<float>(down >> axis & 1u ? i + 1 : i);
+    };
+    const auto leave = [&](unsigned axis, std::size_t i) {
+      return static_cast<float>(down >> axis & 1u ? i : i + 1);
     };
     for (std::size_t lane = 0; lane < 16; ++lane) {
-      t.x_enter[lane] = plane(0, lane % 4);
-      t.x_leave[lane] = plane(0, lane % 4 + 1);
-      t.y_enter[lane] = plane(1, lane / 4);
-      t.y_leave[lane] = plane(1, lane / 4 + 1);
+      t.x_enter[lane] = enter(0, lane % 4);
+      t.x_leave[lane] = leave(0, lane % 4);
+      t.y_enter[lane] = enter(1, lane / 4);
+      t.y_leave[lane] = leave(1, lane / 4);
     }
-    for (std::size_t i = 0; i < 5; ++i) t.z[i] = plane(2, i);
+    for (std::size_t i = 0; i < 4; ++i) {
+      t.z_enter[i] = enter(2, i);
+      t.z_leave[i] = leave(2, i);
+    }
   }
   return tables;
 }
@@ -122,8 +128,7 @@ struct BrickRay {
   float scaled_up(float t) const { return std::max(t, FLT_MIN) * scale * (1 + 0x1p-20f) + FLT_MIN; }
   float scaled_down(float t) const { return std::min(t, FLT_MAX) * scale * (1 - 0x1p-20f); }
 
-  /// The occupied cells that the ray pierces with tnear <= t <= tmax, in the order in which it meets them:
-  /// bit i stands for the cell i ^ mirror_of[octant].
+  /// The occupied cells that the ray pierces with tnear <= t <= tmax.
   HWY_INLINE std::uint64_t pierced(const BrickNode& node, float tnear, float tmax) const {
     const Floats d;
     const PlaneTables& planes = planes_by_octant[octant];
@@ -137,25 +142,34 @@ struct BrickRay {
     const FloatVector x = first(0, ray->origin.x), y = first(1, ray->origin.y), z = first(2, ray->origin.z);
     const FloatVector dx = step(0), dy = step(1), dz = step(2);
 
-    FloatVector layer[5];  // t at the planes of z
-    for (std::size_t i = 0; i < 5; ++i) layer[i] = hn::MulAdd(hn::Set(d, planes.z[i]), dz, z);
+    FloatVector z_enter[4], z_leave[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      z_enter[i] = hn::MulAdd(hn::Set(d, planes.z_enter[i]), dz, z);
+      z_leave[i] = hn::MulAdd(hn::Set(d, planes.z_leave[i]), dz, z);
+    }
     const FloatVector x_enter = hn::MulAdd(hn::Load(d, planes.x_enter.data()), dx, x);
     const FloatVector x_leave = hn::MulAdd(hn::Load(d, planes.x_leave.data()), dx, x);
     constexpr float slack = 0x1p-20f;
     const FloatVector earlier = hn::Set(d, 1 - slack), later = hn::Set(d, 1 + slack);
-    std::uint64_t cells = 0;
+    hn::Mask<Floats> layers[4 * widest_vector / lanes];
     for (std::size_t v = 0; v < widest_vector / lanes; ++v) {
       const FloatVector y_enter = hn::MulAdd(hn::Load(d, &planes.y_enter[v * lanes]), dy, y);
       const FloatVector y_leave = hn::MulAdd(hn::Load(d, &planes.y_leave[v * lanes]), dy, y);
       const FloatVector enter = hn::Max(hn::Mul(hn::Max(x_enter, y_enter), earlier), hn::Set(d, tnear));
       const FloatVector leave = hn::Min(hn::Mul(hn::Min(x_leave, y_leave), later), hn::Set(d, tmax));
-      const auto column = hn::Le(enter, leave);
-      for (std::size_t i = 0; i < 4; ++i) {
-        const auto cell = hn::And(column, hn::And(hn::Le(enter, layer[i + 1]), hn::Le(layer[i], leave)));
-        cells |= bits_of(cell) << (16 * i + v * lanes);
-      }
+      for (std::size_t i = 0; i < 4; ++i)
+        layers[i * (widest_vector / lanes) + v] =
+            hn::Le(hn::Max(enter, z_enter[i]), hn::Min(leave, z_leave[i]));
     }
-    return cells & mirrored(node.occupied, octant);
+#if HWY_TARGET == HWY_AVX3
+    // Of masks in registers of their own.
+    const auto cells = _cvtmask64_u64(_mm512_kunpackd(_mm512_kunpackw(layers[3].raw, layers[2].raw),
+                                                      _mm512_kunpackw(layers[1].raw, layers[0].raw)));
+#else
+    std::uint64_t cells = 0;
+    for (std::size_t i = 0; i < std::size(layers); ++i) cells |= bits_of(layers[i]) << (lanes * i);
+#endif
+    return cells & node.occupied;
   }
 };
 

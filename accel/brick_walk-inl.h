@@ -41,50 +41,49 @@ class BrickWalk {
 
   float tnear(std::size_t lane) const { return tnear_[lane]; }
 
-  /// Takes the rays that stand in cells without a root on to one with, or out. Returns the set of those that
-  /// are in.
+  /// Takes all rays on to the next cell, in step, until one or more stand in a cell whose root they meet, or
+  /// all are out; the first time from where they begin. Returns the set of those that do.
   template <class Probe>
-  HWY_INLINE std::uint64_t find_roots(Probe& probe) {
+  HWY_INLINE std::uint64_t next_roots(Probe& probe) {
     const Integers di;
     const Floats d;
-    Place place = place_;  // in registers
-    auto found = hn::FirstN(d, 0);
-    while (true) {
-      const auto without = hn::RebindMask(d, hn::Eq(place.root, hn::Set(di, no_root)));
-      auto on = hn::And(place.walking, without);
-      if (!hn::AllFalse(d, on)) {
-        if constexpr (!std::is_same_v<Probe, NoProbe>)
-          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.cell_step(true);
-      } else {
-        if (boxes_ == nullptr) break;
-        // All are at roots. Those that pass by a root's box go on, too.
-        const auto arrived = hn::AndNot(found, place.walking);
-        if (hn::AllFalse(d, arrived)) break;
-        on = hn::AndNot(meets_root(place), arrived);
-        found = hn::AndNot(on, place.walking);
-        if constexpr (!std::is_same_v<Probe, NoProbe>)
-          for (auto i = hn::CountTrue(d, on); i > 0; --i) probe.inner_step();
+    // In registers, which g++ does not do for structures.
+    FloatVector x = x_, y = y_, z = z_;
+    IntegerVector cell = cell_, root = hn::Zero(di);
+    auto walking = walking_, found = hn::FirstN(d, 0);
+    if (begun_) advance(x, y, z, cell, walking);
+    begun_ = true;
+    while (!hn::AllFalse(d, walking)) {
+      root = hn::GatherIndex(di, roots_, cell);
+      const auto at_root = hn::AndNot(hn::RebindMask(d, hn::Eq(root, hn::Set(di, no_root))), walking);
+      found = at_root;
+      if (boxes_ != nullptr && !hn::AllFalse(d, at_root)) found = hn::And(at_root, meets_root(x, y, z, cell));
+      if constexpr (!std::is_same_v<Probe, NoProbe>) {
+        for (auto i = hn::CountTrue(d, hn::AndNot(at_root, walking)); i > 0; --i) probe.cell_step(true);
+        for (auto i = hn::CountTrue(d, hn::AndNot(found, at_root)); i > 0; --i) probe.inner_step();
       }
-      advance(place, on);
+      if (!hn::AllFalse(d, found)) break;
+      advance(x, y, z, cell, walking);
     }
-    place_ = place;
-    hn::Store(place.root, di, root_of_.data());
+    x_ = x;
+    y_ = y;
+    z_ = z;
+    cell_ = cell;
+    walking_ = walking;
+    hn::Store(root, di, root_of_.data());
     // No point of the cell is farther from the origin than where the ray leaves it, and a cell's size.
-    const FloatVector leave = hn::Min(hn::Min(next(place, 0), next(place, 1)), next(place, 2));
+    const FloatVector leave = hn::Min(hn::Min(next(x, 0), next(y, 1)), next(z, 2));
     hn::Store(hn::MulAdd(leave, hn::Set(d, 2 * (1 + 0x1p-15f)), hn::Set(d, cell_reach_)), d,
               reach_of_.data());
-    return bits_of(place.walking);
+    return bits_of(found);
   }
   /// Of the present cell.
   std::uint32_t root(std::size_t lane) const { return static_cast<std::uint32_t>(root_of_[lane]); }
   /// An upper bound of the 1-norm from the ray's origin to any point of the present cell or a margin around.
   float reach(std::size_t lane) const { return reach_of_[lane]; }
 
-  /// Takes all rays that are in on to the next cell, or out, if nothing matters there beyond tmax.
-  HWY_INLINE void leave_roots(const std::array<float, lanes>& tmax) {
-    end_ = hn::Min(end_, hn::Load(Floats(), tmax.data()));
-    advance(place_, place_.walking);
-  }
+  /// Nothing matters to that ray beyond tmax.
+  void end(std::size_t lane, float tmax) { end_[lane] = std::min(end_[lane], tmax); }
 
  private:
   /// `roots`: by cell, whatever they number; no_root where there is none. `boxes`: of the roots, by cell, or
@@ -140,24 +139,27 @@ class BrickWalk {
       enter = hn::Max(enter, hn::Min(first_[a], last));
       leave = hn::Min(leave, hn::Max(first_[a], last));
     }
-    place_.cell = hn::Zero(di);
+    FloatVector plane[3];
+    cell_ = hn::Zero(di);
     for (std::size_t a = 0; a < 3; ++a) {
       const auto is_up = hn::Gt(inverse[a], zero);
       const FloatVector place =
           hn::Mul(hn::MulSub(along[a], enter, from_origin[a]), hn::Set(d, grid.inverse_size[a]));
       const FloatVector layer = hn::Floor(hn::Min(hn::Max(place, zero), hn::Set(d, grid.layers[a] - 1)));
       const IntegerVector stride = hn::Set(di, grid.stride[a]);
-      place_.cell = hn::Add(place_.cell, hn::Mul(hn::ConvertTo(di, layer), stride));
+      cell_ = hn::Add(cell_, hn::Mul(hn::ConvertTo(di, layer), stride));
       // The planes ahead. The last of them is crossed at `leave`, or after.
-      place_.index[a] = hn::IfThenElse(is_up, hn::Add(layer, one), layer);
+      plane[a] = hn::IfThenElse(is_up, hn::Add(layer, one), layer);
       step_[a] = hn::IfThenElse(is_up, one, hn::Neg(one));
       stride_[a] = hn::IfThenElse(hn::RebindMask(di, is_up), stride, hn::Neg(stride));
     }
 
     taken_ = bits_of(taken);
-    end_ = leave;
-    place_.walking = hn::And(taken, hn::Le(enter, leave));
-    place_.root = hn::GatherIndex(di, roots_, place_.cell);
+    hn::Store(leave, d, end_.data());
+    walking_ = hn::And(taken, hn::Le(enter, leave));
+    x_ = plane[0];
+    y_ = plane[1];
+    z_ = plane[2];
 
     alignas(64) std::array<std::array<float, lanes>, 7> out;
     alignas(64) std::array<std::int32_t, lanes> octants;
@@ -175,28 +177,24 @@ class BrickWalk {
                      static_cast<unsigned>(octants[lane])};
   }
 
-  struct Place {
-    FloatVector index[3];  // of the planes ahead
-    IntegerVector cell, root;
-    hn::Mask<Floats> walking;  // who is in
-  };
   static constexpr std::int32_t no_root = -1;
   static_assert(static_cast<std::uint32_t>(no_root) == Bricks::empty_cell &&
                 static_cast<std::uint32_t>(no_root) == LeafGrid::empty_cell);
 
   /// Whether the box of the present cell's root lies on the way.
-  HWY_INLINE hn::Mask<Floats> meets_root(const Place& place) const {
+  HWY_INLINE hn::Mask<Floats> meets_root(FloatVector x, FloatVector y, FloatVector z,
+                                         IntegerVector in_cell) const {
     const Floats d;
     const Integers di;
-    const IntegerVector boxes = hn::GatherIndex(di, boxes_, place.cell);
+    const IntegerVector boxes = hn::GatherIndex(di, boxes_, in_cell);
     const auto part = [&](int shift) {
       return hn::ConvertTo(d, hn::And(hn::ShiftRightSame(boxes, shift), hn::Set(di, 31)));
     };
-    FloatVector enter = hn::Load(d, tnear_.data()), leave = end_;
-    for (std::size_t a = 0; a < 3; ++a) {
+    FloatVector enter = hn::Load(d, tnear_.data()), leave = hn::Load(d, end_.data());
+    const auto clip = [&](FloatVector plane, std::size_t a) {
       const int shift = static_cast<int>(10 * a);
       // In cells, from plane 0: the cell begins at the plane ahead, or before it.
-      const FloatVector cell = hn::Sub(place.index[a], hn::Max(step_[a], hn::Zero(d)));
+      const FloatVector cell = hn::Sub(plane, hn::Max(step_[a], hn::Zero(d)));
       const FloatVector unit = hn::Set(d, 1.0f / RootBox::parts);
       const FloatVector low = hn::MulAdd(part(shift), unit, hn::Sub(cell, unit)),
                         high = hn::MulAdd(part(shift + 5), unit, cell);
@@ -204,41 +202,48 @@ class BrickWalk {
                         at_high = hn::MulAdd(high, delta_[a], first_[a]);
       enter = hn::Max(enter, hn::Min(at_low, at_high));
       leave = hn::Min(leave, hn::Max(at_low, at_high));
-    }
+    };
+    clip(x, 0);
+    clip(y, 1);
+    clip(z, 2);
     return hn::Le(enter, leave);
   }
 
   /// The t at which the plane ahead is crossed.
-  HWY_INLINE FloatVector next(const Place& place, std::size_t a) const {
-    return hn::MulAdd(place.index[a], delta_[a], first_[a]);
+  HWY_INLINE FloatVector next(FloatVector plane, std::size_t a) const {
+    return hn::MulAdd(plane, delta_[a], first_[a]);
   }
 
-  HWY_INLINE void advance(Place& place, hn::Mask<Floats> which) const {
+  HWY_INLINE void advance(FloatVector& x, FloatVector& y, FloatVector& z, IntegerVector& cell,
+                          hn::Mask<Floats>& walking) const {
     const Integers di;
-    const FloatVector ahead[3] = {next(place, 0), next(place, 1), next(place, 2)};
-    const FloatVector nearest = hn::Min(hn::Min(ahead[0], ahead[1]), ahead[2]);
-    const auto inside = hn::Lt(nearest, end_);
-    place.walking = hn::AndNot(hn::AndNot(inside, which), place.walking);
-    const auto moves = hn::And(which, inside);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto crosses = hn::And(moves, hn::Le(ahead[a], nearest));
-      place.index[a] = hn::Add(place.index[a], hn::IfThenElseZero(crosses, step_[a]));
-      place.cell = hn::Add(place.cell, hn::IfThenElseZero(hn::RebindMask(di, crosses), stride_[a]));
-    }
-    place.root = hn::GatherIndex(di, roots_, place.cell);
+    const FloatVector at_x = next(x, 0), at_y = next(y, 1), at_z = next(z, 2);
+    const FloatVector nearest = hn::Min(hn::Min(at_x, at_y), at_z);
+    walking = hn::And(walking, hn::Lt(nearest, hn::Load(Floats(), end_.data())));
+    const auto cross = [&](FloatVector at, FloatVector& plane, std::size_t a) {
+      const auto crosses = hn::And(walking, hn::Le(at, nearest));
+      plane = hn::Add(plane, hn::IfThenElseZero(crosses, step_[a]));
+      cell = hn::Add(cell, hn::IfThenElseZero(hn::RebindMask(di, crosses), stride_[a]));
+    };
+    cross(at_x, x, 0);
+    cross(at_y, y, 1);
+    cross(at_z, z, 2);
   }
 
   const std::int32_t *roots_, *boxes_;
   float cell_reach_;
-  Place place_;
+  FloatVector x_, y_, z_;  // index of the planes ahead
+  IntegerVector cell_;
+  hn::Mask<Floats> walking_;         // who is in
   FloatVector step_[3];              // from plane to plane
   FloatVector first_[3], delta_[3];  // t at plane 0, and from plane to plane
-  FloatVector end_;                  // t beyond which no cell matters
   IntegerVector stride_[3];          // from cell to cell across the planes ahead
   alignas(64) std::array<std::int32_t, lanes> root_of_;
   alignas(64) std::array<float, lanes> tnear_, reach_of_;
+  alignas(64) std::array<float, lanes> end_;  // t beyond which no cell matters
   std::array<BrickRay, lanes> rays_;
   std::uint64_t taken_;
+  bool begun_ = false;
 };
 
 }  // namespace raymeter::HWY_NAMESPACE

@@ -45,17 +45,33 @@ struct alignas(64) BrickNode {
 };
 static_assert(sizeof(BrickNode) == 64);
 
-/// A leaf's words: the rows of its triangles; where these are more than a block, for each block the cells
-/// that its triangles meet, 64 bits in two words; then the indices of the others.
+/// A leaf's words: its triangles in blocks, each of them rows of its own; where there is more than one, for
+/// each the cells that its triangles meet, 64 bits in two words; then the indices of the others.
 struct LeafWords {
-  static constexpr std::size_t block = 16;  ///< triangles
+  static constexpr std::size_t block = 16;  ///< triangles, or fewer in the last one
   static bool has_masks(std::size_t triangles) { return triangles > block; }
   static std::size_t masks(std::size_t triangles) {
     return has_masks(triangles) ? (triangles + block - 1) / block : 0;
   }
+  /// Where a leaf may begin, from `word` on: whole blocks begin with a line of the cache.
+  static std::uint64_t begin(std::uint64_t word, std::size_t triangles) {
+    return triangles < block ? word : (word + 15) / 16 * 16;
+  }
   /// Without the others.
   static std::size_t count(std::size_t triangles) {
     return TriangleRows::rows * triangles + 2 * masks(triangles);
+  }
+  /// The block of triangles that begins with `first`.
+  static TriangleRows rows(const std::uint32_t* words, std::size_t triangles, std::size_t first) {
+    return {words + TriangleRows::rows * first,
+            static_cast<std::uint32_t>(std::min(block, triangles - first))};
+  }
+  /// Writes the i-th of the triangles.
+  static void put(std::uint32_t* words, std::size_t triangles, std::size_t i, const Triangle& triangle,
+                  std::uint32_t primitive) {
+    const std::size_t first = i / block * block;
+    TriangleRows::put(words + TriangleRows::rows * first, std::min(block, triangles - first), i - first,
+                      triangle, primitive);
   }
   /// The cells that the block of triangles that begins with `first` meets, or all.
   static std::uint64_t cells(const std::uint32_t* words, std::size_t triangles, std::size_t first) {

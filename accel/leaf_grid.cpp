@@ -41,7 +41,7 @@ void write_leaves(const Scene& scene, const CellLists& lists, LeafGrid& grid) {
       *to++ = triangles;
       *to++ = static_cast<std::uint32_t>(list.size()) - triangles;
       for (std::uint32_t i = 0; i < triangles; ++i)
-        TriangleRows::put(to, triangles, i, scene.triangle(list[i]), list[i]);
+        LeafWords::put(to, triangles, i, scene.triangle(list[i]), list[i]);
       to += TriangleRows::rows * triangles;
       to = std::fill_n(to, 2 * LeafWords::masks(triangles), 1u);  // all blocks lie in the leaf's only cell
       std::ranges::copy(list.subspan(triangles), to);

@@ -22,7 +22,7 @@ HWY_INLINE Leaf leaf_of(const LeafGrid& grid, const BrickWalk& walk, std::size_t
   const std::uint32_t* const header = grid.words.data() + walk.root(lane);
   const std::uint32_t triangles = header[0], others = header[1];
   const std::uint32_t* const words = header + LeafGrid::header;
-  return {{words, triangles}, {words + LeafWords::count(triangles), others}, walk.reach(lane), 1};
+  return {words, triangles, {words + LeafWords::count(triangles), others}, walk.reach(lane), 1};
 }
 
 /// Answers as many rays as there are lanes, or fewer. A probe counts them as if they were one.
@@ -33,19 +33,15 @@ HWY_INLINE void answer_all(const LeafGrid& grid, const Scene& scene, std::span<c
   alignas(Query) std::array<std::byte, sizeof(Query) * lanes> storage;
   Query* const queries = reinterpret_cast<Query*>(storage.data());
   for (std::size_t i = 0; i < rays.size(); ++i) new (&queries[i]) Query(scene, walk.ray(i), probe);
-  alignas(64) std::array<float, lanes> tmax{};
-  while (true) {
-    const std::uint64_t in = walk.find_roots(probe);
-    if (in == 0) break;
+  while (const std::uint64_t in = walk.next_roots(probe)) {
     for (std::uint64_t rest = in; rest != 0; rest &= rest - 1)
       __builtin_prefetch(&grid.words[walk.root(static_cast<std::size_t>(std::countr_zero(rest)))]);
     for (std::uint64_t rest = in; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
       probe.cell_step(false);
       queries[lane].visit(leaf_of(grid, walk, lane));
-      tmax[lane] = queries[lane].tmax();
+      walk.end(lane, queries[lane].tmax());
     }
-    walk.leave_roots(tmax);
   }
   for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = queries[i].answer();
   const std::uint64_t all = ~std::uint64_t{0} >> (64 - rays.size());

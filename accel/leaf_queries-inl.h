@@ -23,15 +23,19 @@ namespace raymeter::HWY_NAMESPACE {
 
 /// A leaf that a ray meets, and how far from its origin some point of each primitive may be (1-norm).
 struct Leaf {
-  TriangleRows triangles;
+  const std::uint32_t* words = nullptr;
+  std::uint32_t triangles = 0;  ///< how many
   std::span<const std::uint32_t> others;
   float reach = 0;
   std::uint64_t pierced = 0;  ///< cells
 
-  /// Whether the block of triangles that begins with `first` may be hit.
-  bool has(std::uint32_t first) const {
-    return (pierced & LeafWords::cells(triangles.words, triangles.count, first)) != 0;
+  /// The first triangle of the first block from there on that may be hit, or the number of triangles.
+  HWY_INLINE std::uint32_t next_block(std::uint32_t first) const {
+    while (first < triangles && (pierced & LeafWords::cells(words, triangles, first)) == 0)
+      first += LeafWords::block;
+    return first;
   }
+  TriangleRows block(std::uint32_t first) const { return LeafWords::rows(words, triangles, first); }
 };
 
 template <class Probe>
@@ -53,17 +57,20 @@ class ClosestHit {
   float tmax() const { return interval_.after; }
 
   HWY_INLINE void visit(const Leaf& leaf) {
-    for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
-      if (!leaf.has(first)) continue;
-      count_block(leaf.triangles, first, probe_);
-      const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
-      if (test.candidates == 0) continue;
-      std::uint64_t candidates = test.within(interval_).possible;
-      for (; candidates != 0; candidates &= candidates - 1) {
-        const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        const std::uint32_t primitive = leaf.triangles.primitive(first + lane);
-        if (primitive != best_.primitive)
-          consider(primitive, leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach);
+    for (std::uint32_t i = leaf.next_block(0); i < leaf.triangles;
+         i = leaf.next_block(i + LeafWords::block)) {
+      const TriangleRows block = leaf.block(i);
+      for (std::uint32_t first = 0; first < block.count; first += lanes) {
+        count_block(block, first, probe_);
+        const BlockTest test = test_block(ray_, block, first, leaf.reach);
+        if (test.candidates == 0) continue;
+        std::uint64_t candidates = test.within(interval_).possible;
+        for (; candidates != 0; candidates &= candidates - 1) {
+          const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
+          const std::uint32_t primitive = block.primitive(first + lane);
+          if (primitive != best_.primitive)
+            consider(primitive, block, first + lane, (test.inside() >> lane & 1u) != 0, leaf.reach);
+        }
       }
     }
     if (!leaf.others.empty()) visit_others(leaf.others);
@@ -119,19 +126,22 @@ class AnyHit {
   float tmax() const { return interval_.after; }
 
   HWY_INLINE void visit(const Leaf& leaf) {
-    for (std::uint32_t first = 0; first < leaf.triangles.count; first += lanes) {
-      if (!leaf.has(first)) continue;
-      count_block(leaf.triangles, first, probe_);
-      const BlockTest test = test_block(ray_, leaf.triangles, first, leaf.reach);
-      if (test.candidates == 0) continue;
-      const auto [possible, certain] = test.within(interval_);
-      if (certain != 0) return found();
-      for (std::uint64_t candidates = possible; candidates != 0; candidates &= candidates - 1) {
-        const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-        probe_.decide();
-        if (decide_any(ray_, leaf.triangles, first + lane, (test.inside >> lane & 1u) != 0, leaf.reach))
-          return found();
+    for (std::uint32_t i = leaf.next_block(0); i < leaf.triangles;
+         i = leaf.next_block(i + LeafWords::block)) {
+      const TriangleRows block = leaf.block(i);
+      for (std::uint32_t first = 0; first < block.count && !hit_; first += lanes) {
+        count_block(block, first, probe_);
+        const BlockTest test = test_block(ray_, block, first, leaf.reach);
+        if (test.candidates == 0) continue;
+        const auto [possible, certain] = test.within(interval_);
+        hit_ = certain != 0;
+        for (std::uint64_t candidates = possible; candidates != 0 && !hit_; candidates &= candidates - 1) {
+          const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
+          probe_.decide();
+          hit_ = decide_any(ray_, block, first + lane, (test.inside() >> lane & 1u) != 0, leaf.reach);
+        }
       }
+      if (hit_) return found();
     }
     if (!leaf.others.empty()) visit_others(leaf.others);
   }
@@ -167,7 +177,9 @@ class MovedQuery {
       : query_(query), by_(by * ray.scale), moved_(2 * (1 + 0x1p-20f) * static_cast<float>(by_)) {}
   float tmax() const { return -float_below(by_ - double(query_.tmax())) * (1 + 0x1p-20f); }
   void visit(const Leaf& leaf) {
-    query_.visit({leaf.triangles, leaf.others, leaf.reach + moved_, leaf.pierced});
+    Leaf seen = leaf;
+    seen.reach += moved_;
+    query_.visit(seen);
   }
   bool done() const { return query_.done(); }
 
@@ -197,11 +209,9 @@ HWY_NOINLINE Answer answer_special(const Grid& grid, const Scene& scene, const R
       unmoved.ray = &ray;
       Query query(scene, unmoved, probe);
       MovedQuery<Query> moved_query(query, unmoved, interval.enter);
-      alignas(64) std::array<float, lanes> tmax{};
-      while (walk.find_roots(probe) != 0) {
+      while (walk.next_roots(probe) != 0) {
         visit_root(walk, moved_query);
-        tmax[0] = moved_query.tmax();
-        walk.leave_roots(tmax);
+        walk.end(0, moved_query.tmax());
       }
       return query.answer();
     }

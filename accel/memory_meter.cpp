@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 
 #include <memory>
+#include <new>
 
 namespace raymeter {
 
@@ -19,12 +20,27 @@ void MemoryMeter::add(std::uint64_t bytes) {
   }
 }
 
+namespace {
+
+constexpr std::align_val_t line{64};
+
 void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
   constexpr std::size_t page = 4096, huge = 2 << 20;
   if (bytes >= 2 * huge && std::align(page, page, memory, bytes) != nullptr)
     madvise(memory, bytes / page * page, MADV_HUGEPAGE);  // it may refuse
 #endif
+}
+
+}  // namespace
+
+void* allocate_lines(std::size_t bytes) {
+  void* const memory = ::operator new(bytes, line);
+  prefer_huge_pages(memory, bytes);
+  return memory;
+}
+void free_lines(void* memory) noexcept {
+  ::operator delete(memory, line);
 }
 
 }  // namespace raymeter

@@ -33,15 +33,17 @@ class MemoryMeter {
   std::uint64_t limit_;
 };
 
-/// Asks the system for huge pages where an array is large: fewer pages to fetch and to look up. Embree asks
-/// for its memory, too.
-void prefer_huge_pages(void* memory, std::size_t bytes);
+/// Memory that begins with a line of the cache. Where it is large the system is asked for huge pages: fewer
+/// pages to fetch and to look up. Embree asks for its memory, too. Throws std::bad_alloc.
+void* allocate_lines(std::size_t bytes);
+void free_lines(void* memory) noexcept;
 
 /// Lets a standard container charge its memory to a meter, which must outlive it.
 template <class T>
 class MeteredAllocator {
  public:
   using value_type = T;
+  static_assert(alignof(T) <= 64);
   using propagate_on_container_move_assignment = std::true_type;
   using propagate_on_container_swap = std::true_type;
 
@@ -52,16 +54,14 @@ class MeteredAllocator {
   T* allocate(std::size_t n) {
     meter_->add(n * sizeof(T));
     try {
-      T* const memory = std::allocator<T>().allocate(n);
-      prefer_huge_pages(memory, n * sizeof(T));
-      return memory;
+      return static_cast<T*>(allocate_lines(n * sizeof(T)));
     } catch (...) {
       meter_->remove(n * sizeof(T));
       throw;
     }
   }
   void deallocate(T* p, std::size_t n) noexcept {
-    std::allocator<T>().deallocate(p, n);
+    free_lines(p);
     meter_->remove(n * sizeof(T));
   }
   template <class U>

@@ -53,10 +53,16 @@ struct LaneIntervals {
 /// Rays against triangles, lane by lane: one in all lanes against several.
 struct BlockTest {
   std::uint64_t candidates = 0;  ///< the ray's line may pass through the triangle
-  std::uint64_t inside = 0;      ///< it certainly does, and not through its edges
   FloatVector det, height;       ///< t is height / det
   FloatVector edge;              ///< in TriangleRows::edge_unit
-  FloatVec3 from_corner;         ///< the ray's origin, from the first corner
+  FloatVector distance;          ///< of the first corner from the ray's origin, 1-norm
+  FloatVector least, greatest;   ///< of the three numbers that say on which side of the edges it passes
+  FloatVector error;             ///< of these
+
+  /// Of the candidates and others: the line certainly passes through, and not through an edge.
+  HWY_INLINE std::uint64_t inside() const {
+    return bits_of(hn::Or(hn::Gt(least, error), hn::Lt(greatest, hn::Neg(error))));
+  }
 
   /// Of |det| and of the height with its sign, with the errors of filter.h; infinite where something may have
   /// overflowed.
@@ -71,8 +77,8 @@ struct BlockTest {
     const FloatVector edges = hn::Mul(edge, edge);
     const FloatVector det_error = hn::Mul(edges, hn::Set(d, 0x1p-20f / (unit * unit)));
     // A bound by the cell would do, but not tell that a ray leaves the triangle that it starts on.
-    const FloatVector distance = hn::Add(norm_of(from_corner), hn::Set(d, filter::tiny));
-    const FloatVector height_error = hn::Mul(hn::Mul(edges, distance), hn::Set(d, 0x1p-20f / (unit * unit)));
+    const FloatVector away = hn::Add(distance, hn::Set(d, filter::tiny));
+    const FloatVector height_error = hn::Mul(hn::Mul(edges, away), hn::Set(d, 0x1p-20f / (unit * unit)));
     const FloatVector positive = hn::Abs(det), along = hn::Xor(height, hn::And(det, hn::SignBit(d)));
     const FloatVector least_det = hn::Sub(positive, det_error);
     return {least_det, hn::Add(positive, det_error), hn::Sub(along, height_error),
@@ -90,7 +96,7 @@ struct BlockTest {
     const auto between = hn::And(hn::Gt(t.lowest, hn::Mul(interval.inside_from, t.greatest_det)),
                                  hn::Le(t.highest, hn::Mul(interval.inside_to, t.least_det)));
     const std::uint64_t possible = candidates & ~bits_of(hn::And(t.steep, beyond));
-    return {possible, possible & inside & bits_of(hn::And(t.steep, between))};
+    return {possible, possible & inside() & bits_of(hn::And(t.steep, between))};
   }
   HWY_INLINE Hits within(const FilterInterval& interval) const {
     const Floats d;
@@ -129,8 +135,7 @@ HWY_INLINE BlockTest test_lanes(const FloatVec3& origin, const FloatVec3& direct
   const FloatVector error = hn::Mul(area, hn::Set(d, 0x1.8p-20f / TriangleRows::edge_unit));
   const FloatVector least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
   const auto outside = hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(greatest, error));
-  const auto inside = hn::Or(hn::Gt(least, error), hn::Lt(greatest, hn::Neg(error)));
-  return {there & ~bits_of(outside), bits_of(inside), det, dot_of(triangles.e2, q), edge, s};
+  return {there & ~bits_of(outside), det, dot_of(triangles.e2, q), edge, norm_of(s), least, greatest, error};
 }
 
 /// The triangles first, first + 1, ... of `rows`.

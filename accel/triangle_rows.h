@@ -43,7 +43,7 @@ struct TriangleRows {
   }
 
   /// Writes a column of the rows that begin at `words`.
-  static void put(std::uint32_t* words, std::uint32_t count, std::uint32_t column, const Triangle& triangle,
+  static void put(std::uint32_t* words, std::size_t count, std::size_t column, const Triangle& triangle,
                   std::uint32_t primitive) {
     const auto put_float = [&](float number) {
       words[column] = std::bit_cast<std::uint32_t>(number);

@@ -69,8 +69,8 @@ void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
       const std::uint32_t i = first + lane;
       if (i < rows.count) {
         const PlaneHit plane(ray, rows.triangle(i), rows.edge(i), reach);
-        claims[i] = {claimed(possible), claimed(test.inside), claimed(certain), plane.known(), plane.height,
-                     plane.det,         plane.height_error,   plane.det_error};
+        claims[i] = {claimed(possible), claimed(test.inside()), claimed(certain), plane.known(), plane.height,
+                     plane.det,         plane.height_error,     plane.det_error};
       } else {
         EXPECT_FALSE(claimed(possible) || claimed(certain)) << "there is no such triangle";
       }
