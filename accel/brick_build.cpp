@@ -272,7 +272,7 @@ class NodeRules {
     return {first[0] + cell % 4, first[1] + cell / 4 % 4, first[2] + cell / 16};
   }
 
-  /// Grown by a margin: see BrickRay.
+  /// Grown by a margin: see RayPacket.
   Box tight_box(const Bounds& bounds, const Box& cell) const {
     Box box;
     for (int axis = 0; axis < 3; ++axis) {
@@ -361,6 +361,9 @@ struct Part {
     if (words > std::numeric_limits<std::uint32_t>::max()) refuse();
   }
 
+  /// Where the words of another part may begin.
+  std::uint64_t end_of_words() const { return LeafWords::begin(words, LeafWords::block); }
+
   [[noreturn]] static void refuse() { throw Error("brick-grid: more than 16 GiB of leaves"); }
 
   /// Writes the words of all leaves, at their place.
@@ -383,6 +386,7 @@ struct Part {
       to = std::copy_n(next, leaf.others, to);
       next += leaf.others;
     }
+    std::fill(to, first + end_of_words(), 0u);
   }
 };
 
@@ -684,11 +688,10 @@ void build_bricks(const Scene& scene, const BrickOptions& options, MemoryMeter& 
   });
 
   // All together, the large nodes first.
-  std::vector<Place> places{{large.part.nodes.size(), LeafWords::begin(large.part.words, LeafWords::block)}};
+  std::vector<Place> places{{large.part.nodes.size(), large.part.end_of_words()}};
   bricks.depth = large.part.depth;
   for (const Part& part : parts) {
-    places.push_back({places.back().node + part.nodes.size(),
-                      LeafWords::begin(places.back().word + part.words, LeafWords::block)});
+    places.push_back({places.back().node + part.nodes.size(), places.back().word + part.end_of_words()});
     bricks.depth = std::max(bricks.depth, part.depth);
   }
   const Place end = places.back();

@@ -26,7 +26,7 @@ struct CutBrick {
   std::array<int, 3> layers{4, 4, 4};  ///< cells along each axis; where there is one, all of the node's size
   double margin = 0;
 
-  /// How far beyond its planes a cell counts as met, at least: see BrickRay.
+  /// How far beyond its planes a cell counts as met, at least: see RayPacket.
   double slack(int axis) const {
     return margin +
            0x1p-20 * (node.plane(axis, layers[static_cast<std::size_t>(axis)]) - node.plane(axis, 0));

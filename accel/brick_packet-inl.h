@@ -12,33 +12,12 @@
 #include <type_traits>
 #include <utility>
 
-#include "accel/decide_lanes-inl.h"
+#include "accel/leaf_queries-inl.h"
 #include "accel/packet_frustum-inl.h"
-#include "accel/primitive_test.h"
-#include "scenes/geometry/decide.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
-
-/// Triangles of a leaf, as many as a vector has lanes.
-class PacketBlock {
- public:
-  HWY_INLINE PacketBlock(const TriangleRows& rows, std::uint32_t first) : rows_(rows), first_(first) {}
-
-  const TriangleRows& rows() const { return rows_; }
-  std::uint32_t column(std::size_t i) const { return first_ + static_cast<std::uint32_t>(i); }
-  std::uint32_t primitive(std::size_t i) const { return rows_.primitive(column(i)); }
-  Triangle triangle(std::size_t i) const { return rows_.triangle(column(i)); }
-  float coordinate(std::size_t row, std::size_t i) const { return rows_.row(row)[column(i)]; }
-  HWY_INLINE FloatVector edges() const {
-    return hn::LoadU(Floats(), rows_.row(TriangleRows::edge_row) + first_);
-  }
-
- private:
-  TriangleRows rows_;
-  std::uint32_t first_;
-};
 
 /// The edges of such triangles, for one after the other.
 class BlockEdges {
@@ -54,7 +33,7 @@ class BlockEdges {
     put(3, triangles.e2);
   }
   /// One in all lanes.
-  HWY_INLINE LaneTriangles one(const PacketBlock& block, std::size_t i) const {
+  HWY_INLINE LaneTriangles one(const LeafBlock& block, std::size_t i) const {
     const Floats d;
     const auto corner = [&](std::size_t row) { return hn::Set(d, block.coordinate(row, i)); };
     const auto edge = [&](std::size_t row) { return hn::Set(d, rows_[row][i]); };
@@ -63,246 +42,6 @@ class BlockEdges {
 
  private:
   alignas(64) float rows_[6][lanes];
-};
-
-/// What the queries of a packet have in common.
-template <class Probe>
-class PacketQuery {
- public:
-  PacketQuery(const Scene& scene, const Ray* rays, RayPacket& packet, PacketMask live, Probe& probe)
-      : scene_(scene), rays_(rays), packet_(packet), live_(live), probe_(probe) {}
-  /// The rays that are not done yet.
-  PacketMask live() const { return live_; }
-  void drop(PacketMask done) { live_ &= ~done; }
-
- protected:
-  /// The probe, of one of the rays.
-  Probe& probe(std::size_t ray) {
-    probe_.select(ray);
-    return probe_;
-  }
-
-  const Scene& scene_;
-  const Ray* rays_;
-  RayPacket& packet_;
-  PacketMask live_;
-
- private:
-  Probe& probe_;
-};
-
-/// The closest hits. Of a ray's hits the one that certainly comes before all others so far is pending: it
-/// ends the interval, and its t is found when all is over, for all rays together.
-template <class Probe>
-class ClosestHits : public PacketQuery<Probe> {
-  using Base = PacketQuery<Probe>;
-  using Base::live_, Base::packet_, Base::probe, Base::rays_, Base::scene_;
-
- public:
-  ClosestHits(const Scene& scene, const Ray* rays, RayPacket& packet, PacketMask live, Probe& probe)
-      : Base(scene, rays, packet, live, probe) {
-    for (std::size_t v = 0; v < packet_vectors; ++v) {
-      for (PacketFloats* const t : {&pending_least_, &best_least_, &best_t_})
-        t->set(v, hn::Set(Floats(), no_hit));
-      for (PacketIndices* const primitive : {&pending_, &best_})
-        primitive->set(v, hn::Set(Indices(), no_primitive));
-    }
-  }
-
-  /// A triangle of the block, against vector v of the rays.
-  HWY_INLINE void consider_triangle(const PacketBlock& block, std::size_t i, std::size_t v,
-                                    const BlockTest& test) {
-    const BlockTest::Bounds t = test.bounds();
-    const auto [possible, certain] = test.within(packet_.intervals(v), t);
-    if (possible == 0) return;
-    const FloatVector least = least_t(t), greatest = greatest_t(t);
-    const std::uint64_t first = bits_of(hn::Lt(greatest, hn::Min(pending_least_.get(v), best_least_.get(v))));
-    const std::uint64_t late = bits_of(hn::Gt(least, packet_.after.get(v)));
-    if ((certain & first) != 0) {
-      const auto better = mask_of(certain & first);
-      for (std::size_t row = 0; row < 9; ++row)
-        corners_[row].set(v, better, hn::Set(Floats(), block.coordinate(row, i)));
-      pending_.set(v, better, hn::Set(Indices(), block.primitive(i)));
-      pending_least_.set(v, better, least);
-      packet_.after.set(v, better, greatest);
-    }
-    const PacketMask inside = packet_bits(test.inside(), v);
-    for_each_ray(packet_bits(possible & ~(certain & (first | late)), v),
-                 [&](std::size_t ray) { decide_on(ray, block, i, inside >> ray & 1u); });
-  }
-  /// A ray against the block.
-  HWY_INLINE void consider_ray(const PacketBlock& block, std::size_t ray, const BlockTest& test) {
-    const BlockTest::Bounds t = test.bounds();
-    const auto [possible, certain] = test.within(packet_.interval_in_all_lanes(ray), t);
-    if (possible == 0) return;
-    alignas(64) float least[lanes], greatest[lanes];
-    hn::Store(least_t(t), Floats(), least);
-    hn::Store(greatest_t(t), Floats(), greatest);
-    for (std::uint64_t rest = possible; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      if (certain >> i & 1u) {
-        if (greatest[i] < std::min(pending_least_[ray], best_least_[ray])) {
-          for (std::size_t row = 0; row < 9; ++row) corners_[row][ray] = block.coordinate(row, i);
-          pending_[ray] = block.primitive(i);
-          pending_least_[ray] = least[i];
-          packet_.after[ray] = greatest[i];
-          continue;
-        }
-        if (least[i] > packet_.after[ray]) continue;
-      }
-      decide_on(ray, block, i, test.inside() >> i & 1u);
-    }
-  }
-  HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
-    for_each_ray(active, [&](std::size_t ray) {
-      settle(ray);
-      Hit hit = answer(ray);
-      test_closest(scene_, primitive, FilterRay(rays_[ray]), hit, probe(ray));
-      take(ray, hit);
-    });
-  }
-
-  /// When all is over, and before `answer`.
-  HWY_INLINE void finish() {
-    PacketMask open = 0;
-    for (std::size_t v = 0; v < packet_vectors; ++v)
-      open |= packet_bits(
-          bits_of(hn::RebindMask(Floats(), hn::Ne(pending_.get(v), hn::Set(Indices(), no_primitive)))), v);
-    if (open == 0) return;
-    PacketFloats t{};
-    const PacketMask decided = decide_planes(
-        packet_, open,
-        [&](std::size_t row, std::size_t ray) {
-          return hn::PromoteTo(Doubles(), hn::Load(HalfFloats(), &corners_[row].numbers[ray]));
-        },
-        t);
-    for_each_ray(decided, [&](std::size_t ray) { probe(ray).decide(); });
-    PacketMask others = 0;
-    for (std::size_t v = 0; v < packet_vectors; ++v) {
-      const auto hit = hn::And(hn::Lt(t.get(v), hn::Set(Floats(), no_hit)), mask_of(vector_bits(decided, v)));
-      const auto only = hn::And(hit, hn::Eq(best_t_.get(v), hn::Set(Floats(), no_hit)));
-      others |= packet_bits(bits_of(hit) & ~bits_of(only), v);
-      best_t_.set(v, only, t.get(v));
-      best_.set(v, only, pending_.get(v));
-    }
-    for_each_ray(others, [&](std::size_t ray) { take(ray, {t[ray], pending_[ray]}); });
-    for_each_ray(open & ~decided, [&](std::size_t ray) { settle(ray); });
-  }
-  Hit answer(std::size_t ray) const { return {best_t_[ray], best_[ray]}; }
-
- private:
-  using Indices = hn::RebindToUnsigned<Floats>;
-
-  /// Bounds of the t of certain hits.
-  static HWY_INLINE FloatVector least_t(const BlockTest::Bounds& t) {
-    return hn::Mul(hn::Div(t.lowest, t.greatest_det), hn::Set(Floats(), 1 - 0x1p-20f));
-  }
-  static HWY_INLINE FloatVector greatest_t(const BlockTest::Bounds& t) {
-    return hn::Mul(hn::Div(t.highest, t.least_det), hn::Set(Floats(), 1 + 0x1p-20f));
-  }
-
-  HWY_NOINLINE void decide_on(std::size_t ray, const PacketBlock& block, std::size_t i, bool inside) {
-    const std::uint32_t primitive = block.primitive(i);
-    if (primitive == best_[ray] || primitive == pending_[ray]) return;
-    settle(ray);
-    probe(ray).decide();
-    const Triangle triangle = block.triangle(i);
-    take(ray, {inside ? decide_inside(rays_[ray], triangle) : decide(rays_[ray], triangle), primitive});
-  }
-  void settle(std::size_t ray) {
-    const std::uint32_t primitive = std::exchange(pending_[ray], no_primitive);
-    if (primitive == no_primitive) return;
-    pending_least_[ray] = no_hit;
-    const auto corner = [&](std::size_t row) {
-      return Vec3{corners_[row][ray], corners_[row + 1][ray], corners_[row + 2][ray]};
-    };
-    probe(ray).decide();
-    take(ray, {decide_inside(rays_[ray], {corner(0), corner(3), corner(6)}), primitive});
-  }
-  void take(std::size_t ray, const Hit& hit) {
-    if (hit.t == no_hit || !(hit < answer(ray))) return;
-    best_t_[ray] = hit.t;
-    best_[ray] = hit.primitive;
-    const BrickRay scaled{.scale = packet_.scale[ray]};
-    best_least_[ray] = scaled.scaled_down(hit.t);
-    packet_.after[ray] = std::min(packet_.after[ray], scaled.scaled_up(hit.t));
-  }
-
-  PacketFloats pending_least_, best_least_;  // of their t, at least, scaled
-  std::array<PacketFloats, 9> corners_{};    // of the pending triangles
-  PacketIndices pending_;
-  PacketFloats best_t_;
-  PacketIndices best_;
-};
-
-/// Whether there are any hits.
-template <class Probe>
-class AnyHits : public PacketQuery<Probe> {
-  using Base = PacketQuery<Probe>;
-  using Base::live_, Base::packet_, Base::probe, Base::rays_, Base::scene_;
-
- public:
-  using Base::Base;
-
-  HWY_INLINE void consider_triangle(const PacketBlock& block, std::size_t i, std::size_t v,
-                                    const BlockTest& test) {
-    const auto [possible, certain] = test.within(packet_.intervals(v), test.bounds());
-    hit(packet_bits(certain, v));
-    const PacketMask open = packet_bits(possible & ~certain, v);
-    if (open != 0) decide_on(open, block, i, packet_bits(test.inside(), v));
-  }
-  HWY_INLINE void consider_ray(const PacketBlock& block, std::size_t ray, const BlockTest& test) {
-    const PacketMask one = PacketMask{1} << ray;
-    const auto [possible, certain] = test.within(packet_.interval_in_all_lanes(ray), test.bounds());
-    if (certain != 0) return hit(one);
-    for (std::uint64_t rest = possible; rest != 0 && (live_ & one) != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      decide_on(one, block, i, test.inside() >> i & 1u ? one : 0);
-    }
-  }
-  HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
-    for_each_ray(active, [&](std::size_t ray) {
-      if (test_any(scene_, primitive, FilterRay(rays_[ray]), probe(ray))) hit(PacketMask{1} << ray);
-    });
-  }
-
-  void finish() {}
-  bool answer(std::size_t ray) const { return hits_ >> ray & 1u; }
-
- private:
-  /// `inside`: the rays that certainly pass inside.
-  HWY_NOINLINE void decide_on(PacketMask open, const PacketBlock& block, std::size_t i, PacketMask inside) {
-    for_each_ray(open, [&](std::size_t ray) { probe(ray).decide(); });
-    if (std::popcount(open) > few) {
-      PacketFloats t{};
-      const PacketMask decided = decide_planes(
-          packet_, open,
-          [&](std::size_t row, std::size_t) { return hn::Set(Doubles(), double(block.coordinate(row, i))); },
-          t);
-      PacketMask met = 0;
-      for (std::size_t v = 0; v < packet_vectors; ++v)
-        met |= packet_bits(bits_of(hn::Lt(t.get(v), hn::Set(Floats(), no_hit))), v);
-      hit(decided & met & inside);
-      open &= ~decided | (met & ~inside);
-    }
-    for_each_ray(open, [&](std::size_t ray) {
-      const BrickRay one{.ray = &rays_[ray], .scale = packet_.scale[ray]};
-      const Vec3 corner = block.triangle(i).a, &from = rays_[ray].origin;
-      const float reach =
-          (std::abs(corner.x - from.x) + std::abs(corner.y - from.y) + std::abs(corner.z - from.z)) *
-          (1 + 0x1p-20f);
-      if (decide_any(one, block.rows(), block.column(i), inside >> ray & 1u, reach))
-        hit(PacketMask{1} << ray);
-    });
-  }
-  void hit(PacketMask rays) {
-    hits_ |= rays;
-    live_ &= ~rays;
-  }
-
-  /// So many rays are decided sooner one by one.
-  static constexpr int few = 3;
-  PacketMask hits_ = 0;
 };
 
 /// The triangles that a packet has met of late: long ones lie in many leaves.
@@ -467,7 +206,7 @@ class PacketWalk {
       active &= query_.live();
       const auto rays = static_cast<std::size_t>(std::popcount(active));
       const TriangleRows rows = LeafWords::rows(words, leaf.triangles, begin);
-      const PacketBlock block(rows, first);
+      const LeafBlock block(rows, first);
       const LaneTriangles triangles = triangles_of(rows, first);
       std::uint64_t kept = lanes_from(rows, first);
       if (rays > few) kept &= bits_of(frustum_.may_meet(triangles));
@@ -482,7 +221,7 @@ class PacketWalk {
       query_.consider_other(words[LeafWords::count(leaf.triangles) + i], active & query_.live());
   }
   /// Each ray against the block.
-  HWY_INLINE void test_rays(const PacketBlock& block, const LaneTriangles& triangles, std::uint64_t kept,
+  HWY_INLINE void test_rays(const LeafBlock& block, const LaneTriangles& triangles, std::uint64_t kept,
                             PacketMask active) {
     count(active, [&] {
       probe_.test_block();
@@ -497,7 +236,7 @@ class PacketWalk {
     });
   }
   /// Each triangle against all rays, also those that pass beside the leaf: it need not be tested again.
-  HWY_INLINE void test_triangles(const PacketBlock& block, const BlockEdges& edges, std::uint64_t kept) {
+  HWY_INLINE void test_triangles(const LeafBlock& block, const BlockEdges& edges, std::uint64_t kept) {
     for (; kept != 0; kept &= kept - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(kept));
       if (!mailbox_.is_new(block.primitive(i))) continue;

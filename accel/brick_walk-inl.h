@@ -7,19 +7,17 @@
 #endif
 
 #include <bit>
-#include <span>
 #include <type_traits>
 
-#include "accel/brick_ray-inl.h"
-#include "accel/leaf_grid.h"
 #include "accel/probe.h"
+#include "accel/ray_packet-inl.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
 
-/// As many independent rays as a vector has lanes, made ready and taken from root to root, all at once: the
-/// steps of this are few and alike. What is below a root is then done ray by ray.
+/// As many independent rays as a vector has lanes, taken from cell to cell in step: this is alike for all.
+/// What is below a root is then done ray by ray.
 ///
 /// A 3DDDA as in grid_walk.h, in floats. Why no cell is missed: an axis' planes are crossed at first + index
 /// * delta, which grows with the index however it is rounded, and at any t the walk is in the layer between
@@ -28,18 +26,50 @@ namespace raymeter::HWY_NAMESPACE {
 /// registered in every cell that they come as near to as the margin of Bricks::space, which is more.
 class BrickWalk {
  public:
-  /// At most as many rays as there are lanes. They must outlive this.
-  HWY_INLINE BrickWalk(const Bricks& bricks, std::span<const Ray> rays)
-      : BrickWalk(bricks.grid, bricks.roots.data(), bricks.root_boxes.data(), rays) {}
-  HWY_INLINE BrickWalk(const LeafGrid& grid, std::span<const Ray> rays)
-      : BrickWalk(grid.grid, grid.leaves.data(), nullptr, rays) {}
+  static constexpr std::uint32_t no_root = 0xffffffffu;
 
-  /// The set of rays that this is proved for, by bits: not those that start far away, or look behind their
-  /// origin, or whose direction would leave the range of floats. The others are not walked.
-  std::uint64_t taken() const { return taken_; }
-  const BrickRay& ray(std::size_t lane) const { return rays_[lane]; }
-
-  float tnear(std::size_t lane) const { return tnear_[lane]; }
+  /// The rays that `which` has of vector v of the packet, which RayPacket::load says floats do for. `roots`:
+  /// by cell, whatever they number; no_root where there is none. `boxes`: of the roots, by cell, or null.
+  HWY_INLINE BrickWalk(const FloatGrid& grid, const std::uint32_t* roots, const RootBox* boxes,
+                       const RayPacket& rays, std::size_t v, std::uint64_t which)
+      : roots_(reinterpret_cast<const std::int32_t*>(roots)),
+        boxes_(reinterpret_cast<const std::int32_t*>(boxes)),
+        cell_reach_(grid.cell_reach),
+        before_(rays.before.get(v)) {
+    const Floats d;
+    const Integers di;
+    const FloatVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    FloatVector enter = before_, leave = rays.after.get(v), from_origin[3];
+    for (std::size_t a = 0; a < 3; ++a) {
+      // The part inside the box.
+      const FloatVector inverse = rays.inverse[a].get(v);
+      from_origin[a] = hn::Sub(hn::Set(d, grid.low[a]), rays.origin[a].get(v));
+      first_[a] = hn::Mul(from_origin[a], inverse);
+      delta_[a] = hn::Mul(hn::Set(d, grid.size[a]), inverse);
+      const FloatVector last = hn::MulAdd(hn::Set(d, grid.layers[a]), delta_[a], first_[a]);
+      enter = hn::Max(enter, hn::Min(first_[a], last));
+      leave = hn::Min(leave, hn::Max(first_[a], last));
+    }
+    FloatVector plane[3];
+    cell_ = hn::Zero(di);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto is_up = hn::Gt(rays.inverse[a].get(v), zero);
+      const FloatVector place = hn::Mul(hn::MulSub(rays.direction[a].get(v), enter, from_origin[a]),
+                                        hn::Set(d, grid.inverse_size[a]));
+      const FloatVector layer = hn::Floor(hn::Min(hn::Max(place, zero), hn::Set(d, grid.layers[a] - 1)));
+      const IntegerVector stride = hn::Set(di, grid.stride[a]);
+      cell_ = hn::Add(cell_, hn::Mul(hn::ConvertTo(di, layer), stride));
+      // The planes ahead. The last of them is crossed at `leave`, or after.
+      plane[a] = hn::IfThenElse(is_up, hn::Add(layer, one), layer);
+      step_[a] = hn::IfThenElse(is_up, one, hn::Neg(one));
+      stride_[a] = hn::IfThenElse(hn::RebindMask(di, is_up), stride, hn::Neg(stride));
+    }
+    x_ = plane[0];
+    y_ = plane[1];
+    z_ = plane[2];
+    hn::Store(leave, d, end_.data());
+    walking_ = hn::And(mask_of(which), hn::Le(enter, leave));
+  }
 
   /// Takes all rays on to the next cell, in step, until one or more stand in a cell whose root they meet, or
   /// all are out; the first time from where they begin. Returns the set of those that do.
@@ -55,7 +85,8 @@ class BrickWalk {
     begun_ = true;
     while (!hn::AllFalse(d, walking)) {
       root = hn::GatherIndex(di, roots_, cell);
-      const auto at_root = hn::AndNot(hn::RebindMask(d, hn::Eq(root, hn::Set(di, no_root))), walking);
+      const auto at_root = hn::AndNot(
+          hn::RebindMask(d, hn::Eq(root, hn::Set(di, static_cast<std::int32_t>(no_root)))), walking);
       found = at_root;
       if (boxes_ != nullptr && !hn::AllFalse(d, at_root)) found = hn::And(at_root, meets_root(x, y, z, cell));
       if constexpr (!std::is_same_v<Probe, NoProbe>) {
@@ -86,101 +117,6 @@ class BrickWalk {
   void end(std::size_t lane, float tmax) { end_[lane] = std::min(end_[lane], tmax); }
 
  private:
-  /// `roots`: by cell, whatever they number; no_root where there is none. `boxes`: of the roots, by cell, or
-  /// null.
-  HWY_INLINE BrickWalk(const FloatGrid& grid, const std::uint32_t* roots, const RootBox* boxes,
-                       std::span<const Ray> rays)
-      : roots_(reinterpret_cast<const std::int32_t*>(roots)),
-        boxes_(reinterpret_cast<const std::int32_t*>(boxes)),
-        cell_reach_(grid.cell_reach) {
-    const Floats d;
-    const Integers di;
-    // One row for each number of a ray.
-    alignas(64) std::array<std::array<float, lanes>, 8> rows;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const Ray& ray = rays[std::min(lane, rays.size() - 1)];
-      const std::array<float, 8> numbers{ray.origin.x,    ray.origin.y,    ray.origin.z,    ray.tnear,
-                                         ray.direction.x, ray.direction.y, ray.direction.z, ray.tfar};
-      for (std::size_t i = 0; i < 8; ++i) rows[i][lane] = numbers[i];
-    }
-    const auto row = [&](std::size_t i) { return hn::Load(d, rows[i].data()); };
-    const FloatVector tnear = row(3), tfar = row(7), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-
-    // The greatest power of two that is not above the norm of the direction, and its inverse.
-    const FloatVector norm = hn::Add(hn::Abs(row(4)), hn::Add(hn::Abs(row(5)), hn::Abs(row(6))));
-    const IntegerVector exponent = hn::And(hn::BitCast(di, norm), hn::Set(di, 0x7f800000));
-    const FloatVector scale = hn::BitCast(d, exponent),
-                      inverse_scale = hn::BitCast(d, hn::Sub(hn::Set(di, 0x7f000000), exponent));
-    // Whether floats do. Each is false of NaN.
-    auto taken =
-        hn::And(hn::FirstN(d, rays.size()),
-                hn::And(hn::And(hn::Gt(norm, hn::Set(d, 0x1p-100f)), hn::Lt(norm, hn::Set(d, 0x1p100f))),
-                        hn::And(hn::Ge(tnear, zero), hn::Eq(tfar, tfar))));
-
-    const FloatVector least = hn::Set(d, FLT_MIN), most = hn::Set(d, FLT_MAX);
-    FloatVector enter = hn::Mul(hn::Mul(hn::Min(tnear, most), scale), hn::Set(d, 1 - 0x1p-20f));
-    hn::Store(enter, d, tnear_.data());
-    FloatVector leave = hn::MulAdd(hn::Mul(hn::Max(tfar, least), scale), hn::Set(d, 1 + 0x1p-20f), least);
-    FloatVector from_origin[3], inverse[3], along[3];
-    IntegerVector octant = hn::Zero(di);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const FloatVector origin = row(a);
-      taken = hn::And(taken, hn::And(hn::Ge(origin, hn::Set(d, grid.nearby_low[a])),
-                                     hn::Le(origin, hn::Set(d, grid.nearby_high[a]))));
-      along[a] = hn::Mul(row(4 + a), inverse_scale);
-      inverse[a] = hn::Div(one, hn::CopySign(hn::Max(hn::Abs(along[a]), hn::Set(d, 0x1p-40f)), along[a]));
-      const auto is_down = hn::Lt(inverse[a], zero);
-      octant = hn::Or(octant, hn::IfThenElseZero(hn::RebindMask(di, is_down), hn::Set(di, 1 << a)));
-      // The part inside the box.
-      from_origin[a] = hn::Sub(hn::Set(d, grid.low[a]), origin);
-      first_[a] = hn::Mul(from_origin[a], inverse[a]);
-      delta_[a] = hn::Mul(hn::Set(d, grid.size[a]), inverse[a]);
-      const FloatVector last = hn::MulAdd(hn::Set(d, grid.layers[a]), delta_[a], first_[a]);
-      enter = hn::Max(enter, hn::Min(first_[a], last));
-      leave = hn::Min(leave, hn::Max(first_[a], last));
-    }
-    FloatVector plane[3];
-    cell_ = hn::Zero(di);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto is_up = hn::Gt(inverse[a], zero);
-      const FloatVector place =
-          hn::Mul(hn::MulSub(along[a], enter, from_origin[a]), hn::Set(d, grid.inverse_size[a]));
-      const FloatVector layer = hn::Floor(hn::Min(hn::Max(place, zero), hn::Set(d, grid.layers[a] - 1)));
-      const IntegerVector stride = hn::Set(di, grid.stride[a]);
-      cell_ = hn::Add(cell_, hn::Mul(hn::ConvertTo(di, layer), stride));
-      // The planes ahead. The last of them is crossed at `leave`, or after.
-      plane[a] = hn::IfThenElse(is_up, hn::Add(layer, one), layer);
-      step_[a] = hn::IfThenElse(is_up, one, hn::Neg(one));
-      stride_[a] = hn::IfThenElse(hn::RebindMask(di, is_up), stride, hn::Neg(stride));
-    }
-
-    taken_ = bits_of(taken);
-    hn::Store(leave, d, end_.data());
-    walking_ = hn::And(taken, hn::Le(enter, leave));
-    x_ = plane[0];
-    y_ = plane[1];
-    z_ = plane[2];
-
-    alignas(64) std::array<std::array<float, lanes>, 7> out;
-    alignas(64) std::array<std::int32_t, lanes> octants;
-    for (std::size_t a = 0; a < 3; ++a) {
-      hn::Store(along[a], d, out[a].data());
-      hn::Store(inverse[a], d, out[3 + a].data());
-    }
-    hn::Store(scale, d, out[6].data());
-    hn::Store(octant, di, octants.data());
-    for (std::size_t lane = 0; lane < rays.size(); ++lane)
-      rays_[lane] = {&rays[lane],
-                     {out[0][lane], out[1][lane], out[2][lane]},
-                     {out[3][lane], out[4][lane], out[5][lane]},
-                     out[6][lane],
-                     static_cast<unsigned>(octants[lane])};
-  }
-
-  static constexpr std::int32_t no_root = -1;
-  static_assert(static_cast<std::uint32_t>(no_root) == Bricks::empty_cell &&
-                static_cast<std::uint32_t>(no_root) == LeafGrid::empty_cell);
-
   /// Whether the box of the present cell's root lies on the way.
   HWY_INLINE hn::Mask<Floats> meets_root(FloatVector x, FloatVector y, FloatVector z,
                                          IntegerVector in_cell) const {
@@ -190,7 +126,7 @@ class BrickWalk {
     const auto part = [&](int shift) {
       return hn::ConvertTo(d, hn::And(hn::ShiftRightSame(boxes, shift), hn::Set(di, 31)));
     };
-    FloatVector enter = hn::Load(d, tnear_.data()), leave = hn::Load(d, end_.data());
+    FloatVector enter = before_, leave = hn::Load(d, end_.data());
     const auto clip = [&](FloatVector plane, std::size_t a) {
       const int shift = static_cast<int>(10 * a);
       // In cells, from plane 0: the cell begins at the plane ahead, or before it.
@@ -239,10 +175,9 @@ class BrickWalk {
   FloatVector first_[3], delta_[3];  // t at plane 0, and from plane to plane
   IntegerVector stride_[3];          // from cell to cell across the planes ahead
   alignas(64) std::array<std::int32_t, lanes> root_of_;
-  alignas(64) std::array<float, lanes> tnear_, reach_of_;
+  alignas(64) std::array<float, lanes> reach_of_;
   alignas(64) std::array<float, lanes> end_;  // t beyond which no cell matters
-  std::array<BrickRay, lanes> rays_;
-  std::uint64_t taken_;
+  FloatVector before_;
   bool begun_ = false;
 };
 

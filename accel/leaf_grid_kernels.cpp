@@ -8,8 +8,7 @@
 
 #include <bit>
 
-#include "accel/brick_walk-inl.h"
-#include "accel/leaf_queries-inl.h"
+#include "accel/answer_rays-inl.h"
 #include "scenes/base/float_mode.h"
 
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
@@ -17,70 +16,66 @@ HWY_BEFORE_NAMESPACE();
 namespace raymeter::HWY_NAMESPACE {
 namespace {
 
-/// The leaf of the cell that a ray is in.
-HWY_INLINE Leaf leaf_of(const LeafGrid& grid, const BrickWalk& walk, std::size_t lane) {
-  const std::uint32_t* const header = grid.words.data() + walk.root(lane);
-  const std::uint32_t triangles = header[0], others = header[1];
-  const std::uint32_t* const words = header + LeafGrid::header;
-  return {words, triangles, {words + LeafWords::count(triangles), others}, walk.reach(lane), 1};
-}
+/// The Tracer of answer_rays: each cell is a leaf.
+struct LeafGridTracer {
+  const LeafGrid& grid;
 
-/// Answers as many rays as there are lanes, or fewer. A probe counts them as if they were one.
-template <class Query, class Answer, class Probe>
-HWY_INLINE void answer_all(const LeafGrid& grid, const Scene& scene, std::span<const Ray> rays,
-                           std::span<Answer> answers, Probe& probe) {
-  BrickWalk walk(grid, rays);
-  alignas(Query) std::array<std::byte, sizeof(Query) * lanes> storage;
-  Query* const queries = reinterpret_cast<Query*>(storage.data());
-  for (std::size_t i = 0; i < rays.size(); ++i) new (&queries[i]) Query(scene, walk.ray(i), probe);
-  while (const std::uint64_t in = walk.next_roots(probe)) {
-    for (std::uint64_t rest = in; rest != 0; rest &= rest - 1)
+  HWY_INLINE BrickWalk walk(const RayPacket& packet, std::size_t v, std::uint64_t which) const {
+    return {grid.grid, grid.leaves.data(), nullptr, packet, v, which};
+  }
+  template <class Probe, class Visit>
+  HWY_INLINE void visit_roots(const BrickWalk& walk, const RayPacket&, std::size_t v, std::uint64_t found,
+                              Probe& probe, const Visit& visit) const {
+    for (std::uint64_t rest = found; rest != 0; rest &= rest - 1)
       __builtin_prefetch(&grid.words[walk.root(static_cast<std::size_t>(std::countr_zero(rest)))]);
-    for (std::uint64_t rest = in; rest != 0; rest &= rest - 1) {
+    for (std::uint64_t rest = found; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
       probe.cell_step(false);
-      queries[lane].visit(leaf_of(grid, walk, lane));
-      walk.end(lane, queries[lane].tmax());
+      visit(leaf_of(walk, lane), v * lanes + lane);
     }
   }
-  for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = queries[i].answer();
-  const std::uint64_t all = ~std::uint64_t{0} >> (64 - rays.size());
-  for (std::uint64_t rest = all & ~walk.taken(); rest != 0; rest &= rest - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-    answers[lane] = answer_special<Query, Answer>(grid, scene, rays[lane], probe,
-                                                  [&](const BrickWalk& special, auto& query) {
-                                                    probe.cell_step(false);
-                                                    query.visit(leaf_of(grid, special, 0));
-                                                  });
+
+ private:
+  /// The leaf of the cell that a ray is in.
+  HWY_INLINE Leaf leaf_of(const BrickWalk& walk, std::size_t lane) const {
+    const std::uint32_t* const header = grid.words.data() + walk.root(lane);
+    const std::uint32_t triangles = header[0], others = header[1];
+    const std::uint32_t* const words = header + LeafGrid::header;
+    return {words, triangles, {words + LeafWords::count(triangles), others}, walk.reach(lane), 1};
+  }
+};
+
+template <class Queries, class Answer, class Probe>
+void answer_batch(const LeafGrid& grid, const Scene& scene, const BatchView& batch, std::span<Answer> answers,
+                  [[maybe_unused]] std::span<RayCounters> counters, Probe& probe) {
+  const FlushDenormals mode;
+  for (std::size_t i = 0; i < batch.rays.size(); i += packet_size) {
+    const std::size_t n = std::min(packet_size, batch.rays.size() - i);
+    if constexpr (std::is_same_v<Probe, CountingProbe>) probe.begin_rays(counters.subspan(i, n));
+    answer_rays<Queries>(LeafGridTracer{grid}, grid.grid, grid.space, scene, batch.rays.subspan(i, n),
+                         answers.subspan(i, n), probe,
+                         [](const RayPacket&, PacketMask, Queries&) { return PacketMask{0}; });
   }
 }
 
-template <template <class> class Query, class Answer>
+template <template <class> class Queries, class Answer>
 void trace(const LeafGrid& grid, const Scene& scene, const BatchView& batch, std::span<Answer> answers) {
-  const FlushDenormals mode;
   NoProbe probe;
-  for (std::size_t i = 0; i < batch.rays.size(); i += lanes) {
-    const std::size_t n = std::min(lanes, batch.rays.size() - i);
-    answer_all<Query<NoProbe>>(grid, scene, batch.rays.subspan(i, n), answers.subspan(i, n), probe);
-  }
+  answer_batch<Queries<NoProbe>>(grid, scene, batch, answers, {}, probe);
 }
-template <template <class> class Query, class Answer>
+template <template <class> class Queries, class Answer>
 void count(const LeafGrid& grid, const Scene& scene, const BatchView& batch, std::span<Answer> answers,
            std::span<RayCounters> counters) {
-  const FlushDenormals mode;
   CountingProbe probe(scene.primitive_count());
-  for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-    probe.begin_ray(counters[i]);
-    answer_all<Query<CountingProbe>>(grid, scene, batch.rays.subspan(i, 1), answers.subspan(i, 1), probe);
-  }
+  answer_batch<Queries<CountingProbe>>(grid, scene, batch, answers, counters, probe);
 }
 
 }  // namespace
 
 const LeafGridKernels& leaf_grid_target_kernels() {
   constexpr const char* isa = HWY_TARGET == HWY_AVX3 ? "avx512" : HWY_TARGET == HWY_AVX2 ? "avx2" : "sse4.2";
-  static constexpr LeafGridKernels kernels{isa, trace<ClosestHit, Hit>, trace<AnyHit, std::uint8_t>,
-                                           count<ClosestHit, Hit>, count<AnyHit, std::uint8_t>};
+  static constexpr LeafGridKernels kernels{isa, trace<ClosestHits, Hit>, trace<AnyHits, std::uint8_t>,
+                                           count<ClosestHits, Hit>, count<AnyHits, std::uint8_t>};
   return kernels;
 }
 

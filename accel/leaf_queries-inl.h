@@ -1,4 +1,4 @@
-// What a ray asks of the leaves that it meets, for the instruction set of HWY_TARGET: included once for each.
+// What rays ask of the leaves that they meet, for the instruction set of HWY_TARGET: included once for each.
 #if defined(RAYMETER_LEAF_QUERIES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYMETER_LEAF_QUERIES_INL
 #undef RAYMETER_LEAF_QUERIES_INL
@@ -7,15 +7,14 @@
 #endif
 
 #include <bit>
-#include <limits>
+#include <cmath>
 #include <span>
-#include <type_traits>
+#include <utility>
 
-#include "accel/brick_ray-inl.h"
-#include "accel/brick_walk-inl.h"
+#include "accel/decide_lanes-inl.h"
 #include "accel/primitive_test.h"
-#include "accel/triangle_block-inl.h"
-#include "accel/walk_space.h"
+#include "accel/ray_packet-inl.h"
+#include "scenes/geometry/decide.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
@@ -38,189 +37,272 @@ struct Leaf {
   TriangleRows block(std::uint32_t first) const { return LeafWords::rows(words, triangles, first); }
 };
 
-template <class Probe>
-HWY_INLINE void count_block(const TriangleRows& triangles, std::uint32_t first, Probe& probe) {
-  probe.test_block();
-  if constexpr (!std::is_same_v<Probe, NoProbe>)
-    for (std::uint32_t i = first; i < std::min<std::uint32_t>(triangles.count, first + lanes); ++i)
-      probe.test(triangles.primitive(i));
-}
-
-/// The closest hit.
-template <class Probe>
-class ClosestHit {
+/// Triangles of a leaf, as many as a vector has lanes.
+class LeafBlock {
  public:
-  HWY_INLINE ClosestHit(const Scene& scene, const BrickRay& ray, Probe& probe)
-      : scene_(scene), ray_(ray), probe_(probe), interval_(ray) {}
+  HWY_INLINE LeafBlock(const TriangleRows& rows, std::uint32_t first) : rows_(rows), first_(first) {}
 
-  /// What lies beyond doesn't matter.
-  float tmax() const { return interval_.after; }
-
-  HWY_INLINE void visit(const Leaf& leaf) {
-    for (std::uint32_t i = leaf.next_block(0); i < leaf.triangles;
-         i = leaf.next_block(i + LeafWords::block)) {
-      const TriangleRows block = leaf.block(i);
-      for (std::uint32_t first = 0; first < block.count; first += lanes) {
-        count_block(block, first, probe_);
-        const BlockTest test = test_block(ray_, block, first, leaf.reach);
-        if (test.candidates == 0) continue;
-        std::uint64_t candidates = test.within(interval_).possible;
-        for (; candidates != 0; candidates &= candidates - 1) {
-          const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-          const std::uint32_t primitive = block.primitive(first + lane);
-          if (primitive != best_.primitive)
-            consider(primitive, block, first + lane, (test.inside() >> lane & 1u) != 0, leaf.reach);
-        }
-      }
-    }
-    if (!leaf.others.empty()) visit_others(leaf.others);
+  const TriangleRows& rows() const { return rows_; }
+  std::uint32_t column(std::size_t i) const { return first_ + static_cast<std::uint32_t>(i); }
+  std::uint32_t primitive(std::size_t i) const { return rows_.primitive(column(i)); }
+  Triangle triangle(std::size_t i) const { return rows_.triangle(column(i)); }
+  float edge(std::size_t i) const { return rows_.edge(column(i)); }
+  float coordinate(std::size_t row, std::size_t i) const { return rows_.row(row)[column(i)]; }
+  HWY_INLINE FloatVector edges() const {
+    return hn::LoadU(Floats(), rows_.row(TriangleRows::edge_row) + first_);
   }
-  static constexpr bool done() { return false; }
-  Hit answer() const { return best_; }
 
  private:
-  HWY_INLINE void consider(std::uint32_t primitive, const TriangleRows& triangles, std::uint32_t column,
-                           bool inside, float reach) {
-    const Triangle triangle = triangles.triangle(column);
-    const PlaneHit plane(ray_, triangle, triangles.edge(column), reach);
-    const Ray& ray = *ray_.ray;
+  TriangleRows rows_;
+  std::uint32_t first_;
+};
+
+/// What the rays of a packet ask of the leaves that they meet, together or one by one.
+template <class Probe>
+class PacketQuery {
+ public:
+  PacketQuery(const Scene& scene, const Ray* rays, RayPacket& packet, Probe& probe)
+      : scene_(scene), rays_(rays), packet_(packet), probe_(probe) {}
+  /// These rays are traced from now on.
+  void begin(PacketMask rays) { live_ = rays; }
+  /// Those of them that are not done yet.
+  PacketMask live() const { return live_; }
+  void drop(PacketMask done) { live_ &= ~done; }
+
+ protected:
+  /// An upper bound of the 1-norm from the ray's origin to the first corner.
+  static float reach_of(const Triangle& triangle, const Ray& ray) {
+    const Vec3 &a = triangle.a, &from = ray.origin;
+    return (std::abs(a.x - from.x) + std::abs(a.y - from.y) + std::abs(a.z - from.z)) * (1 + 0x1p-20f);
+  }
+  /// The probe, of one of the rays.
+  Probe& probe(std::size_t ray) {
+    probe_.select(ray);
+    return probe_;
+  }
+
+  const Scene& scene_;
+  const Ray* rays_;
+  RayPacket& packet_;
+  PacketMask live_ = 0;
+
+ private:
+  Probe& probe_;
+};
+
+/// The closest hits. Of a ray's hits the one that certainly comes before all others so far is pending: it
+/// ends the interval, and its t is found when all is over, for all rays together.
+template <class Probe>
+class ClosestHits : public PacketQuery<Probe> {
+  using Base = PacketQuery<Probe>;
+  using Base::live_, Base::packet_, Base::probe, Base::rays_, Base::reach_of, Base::scene_;
+
+ public:
+  ClosestHits(const Scene& scene, const Ray* rays, RayPacket& packet, Probe& probe)
+      : Base(scene, rays, packet, probe) {
+    for (std::size_t v = 0; v < packet_vectors; ++v) {
+      for (PacketFloats* const t : {&pending_least_, &best_least_, &best_t_})
+        t->set(v, hn::Set(Floats(), no_hit));
+      for (PacketIndices* const primitive : {&pending_, &best_})
+        primitive->set(v, hn::Set(Indices(), no_primitive));
+    }
+  }
+
+  /// A triangle of the block, against vector v of the rays.
+  HWY_INLINE void consider_triangle(const LeafBlock& block, std::size_t i, std::size_t v,
+                                    const BlockTest& test) {
+    const BlockTest::Bounds t = test.bounds();
+    const auto [possible, certain] = test.within(packet_.intervals(v), t);
+    if (possible == 0) return;
+    const FloatVector least = t.least_t(), greatest = t.greatest_t();
+    const std::uint64_t first = bits_of(hn::Lt(greatest, hn::Min(pending_least_.get(v), best_least_.get(v))));
+    const std::uint64_t late = bits_of(hn::Gt(least, packet_.after.get(v)));
+    if ((certain & first) != 0) {
+      const auto better = mask_of(certain & first);
+      for (std::size_t row = 0; row < 9; ++row)
+        corners_[row].set(v, better, hn::Set(Floats(), block.coordinate(row, i)));
+      pending_.set(v, better, hn::Set(Indices(), block.primitive(i)));
+      pending_least_.set(v, better, least);
+      packet_.after.set(v, better, greatest);
+    }
+    const PacketMask inside = packet_bits(test.inside(), v);
+    for_each_ray(packet_bits(possible & ~(certain & (first | late)), v),
+                 [&](std::size_t ray) { decide_on(ray, block, i, inside >> ray & 1u); });
+  }
+  /// A ray against the block.
+  HWY_INLINE void consider_ray(const LeafBlock& block, std::size_t ray, const BlockTest& test) {
+    const BlockTest::Bounds t = test.bounds();
+    const auto [possible, certain] = test.within(packet_.interval_in_all_lanes(ray), t);
+    if (possible == 0) return;
+    alignas(64) float least[lanes], greatest[lanes];
+    hn::Store(t.least_t(), Floats(), least);
+    hn::Store(t.greatest_t(), Floats(), greatest);
+    for (std::uint64_t rest = possible; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      if (certain >> i & 1u) {
+        if (greatest[i] < std::min(pending_least_[ray], best_least_[ray])) {
+          for (std::size_t row = 0; row < 9; ++row) corners_[row][ray] = block.coordinate(row, i);
+          pending_[ray] = block.primitive(i);
+          pending_least_[ray] = least[i];
+          packet_.after[ray] = greatest[i];
+          continue;
+        }
+        if (least[i] > packet_.after[ray]) continue;
+      }
+      decide_on(ray, block, i, test.inside() >> i & 1u);
+    }
+  }
+  HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
+    for_each_ray(active, [&](std::size_t ray) {
+      settle(ray);
+      Hit hit = answer(ray);
+      test_closest(scene_, primitive, FilterRay(rays_[ray]), hit, probe(ray));
+      take(ray, hit);
+    });
+  }
+
+  /// When all is over, and before `answer`.
+  HWY_INLINE void finish() {
+    PacketMask open = 0;
+    for (std::size_t v = 0; v < packet_vectors; ++v)
+      open |= packet_bits(
+          bits_of(hn::RebindMask(Floats(), hn::Ne(pending_.get(v), hn::Set(Indices(), no_primitive)))), v);
+    if (open == 0) return;
+    PacketFloats t{};
+    const PacketMask decided = decide_planes(
+        packet_, open,
+        [&](std::size_t row, std::size_t ray) {
+          return hn::PromoteTo(Doubles(), hn::Load(HalfFloats(), &corners_[row].numbers[ray]));
+        },
+        t);
+    for_each_ray(decided, [&](std::size_t ray) { probe(ray).decide(); });
+    PacketMask others = 0;
+    for (std::size_t v = 0; v < packet_vectors; ++v) {
+      const auto hit = hn::And(hn::Lt(t.get(v), hn::Set(Floats(), no_hit)), mask_of(vector_bits(decided, v)));
+      const auto only = hn::And(hit, hn::Eq(best_t_.get(v), hn::Set(Floats(), no_hit)));
+      others |= packet_bits(bits_of(hit) & ~bits_of(only), v);
+      best_t_.set(v, only, t.get(v));
+      best_.set(v, only, pending_.get(v));
+    }
+    for_each_ray(others, [&](std::size_t ray) { take(ray, {t[ray], pending_[ray]}); });
+    for_each_ray(open & ~decided, [&](std::size_t ray) { settle(ray); });
+  }
+  Hit answer(std::size_t ray) const { return {best_t_[ray], best_[ray]}; }
+
+ private:
+  using Indices = hn::RebindToUnsigned<Floats>;
+
+  HWY_INLINE void decide_on(std::size_t ray, const LeafBlock& block, std::size_t i, bool inside) {
+    const std::uint32_t primitive = block.primitive(i);
+    if (primitive == best_[ray] || primitive == pending_[ray]) return;
+    const Ray& given = rays_[ray];
+    const Triangle triangle = block.triangle(i);
+    const PlaneHit plane(given, packet_.scale[ray], triangle, block.edge(i), reach_of(triangle, given));
     if (plane.known()) {
-      const double inverse = 1 / plane.det, t = plane.height * inverse;
-      const double error =
-          1.01 * (plane.height_error + std::abs(t) * plane.det_error) * inverse + 0x1p-50 * std::abs(t);
-      const float low = rounded(t - error), high = rounded(t + error);
-      if (low > std::min(best_.t, ray.tfar) || high <= ray.tnear) return;
-      if (low == high && inside) {
-        probe_.decide();
-        return take(within(ray, low), primitive);
-      }
+      const auto [low, high] = plane.t();
+      if (low > std::min(best_t_[ray], given.tfar) || high <= given.tnear) return;
     }
-    probe_.decide();
-    take(decide(ray, triangle), primitive);
+    take_decided(ray, triangle, primitive, inside);
   }
-  HWY_INLINE void take(float t, std::uint32_t primitive) {
-    if (t == no_hit || !(Hit{t, primitive} < best_)) return;
-    best_ = {t, primitive};
-    interval_.after = ray_.scaled_up(t);
+  HWY_NOINLINE void take_decided(std::size_t ray, const Triangle& triangle, std::uint32_t primitive,
+                                 bool inside) {
+    settle(ray);
+    probe(ray).decide();
+    take(ray, {inside ? decide_inside(rays_[ray], triangle) : decide(rays_[ray], triangle), primitive});
   }
-  HWY_NOINLINE void visit_others(std::span<const std::uint32_t> others) {
-    const FilterRay filter(*ray_.ray);
-    for (const std::uint32_t primitive : others) test_closest(scene_, primitive, filter, best_, probe_);
-    if (best_.found()) interval_.after = ray_.scaled_up(best_.t);
+  void settle(std::size_t ray) {
+    const std::uint32_t primitive = std::exchange(pending_[ray], no_primitive);
+    if (primitive == no_primitive) return;
+    pending_least_[ray] = no_hit;
+    const auto corner = [&](std::size_t row) {
+      return Vec3{corners_[row][ray], corners_[row + 1][ray], corners_[row + 2][ray]};
+    };
+    probe(ray).decide();
+    take(ray, {decide_inside(rays_[ray], {corner(0), corner(3), corner(6)}), primitive});
+  }
+  void take(std::size_t ray, const Hit& hit) {
+    if (hit.t == no_hit || !(hit < answer(ray))) return;
+    best_t_[ray] = hit.t;
+    best_[ray] = hit.primitive;
+    best_least_[ray] = scaled_down(hit.t, packet_.scale[ray]);
+    packet_.after[ray] = std::min(packet_.after[ray], scaled_up(hit.t, packet_.scale[ray]));
   }
 
-  const Scene& scene_;
-  const BrickRay& ray_;
-  Probe& probe_;
-  FilterInterval interval_;
-  Hit best_;
+  PacketFloats pending_least_, best_least_;  // of their t, at least, scaled
+  std::array<PacketFloats, 9> corners_{};    // of the pending triangles
+  PacketIndices pending_;
+  PacketFloats best_t_;
+  PacketIndices best_;
 };
 
-/// Whether there is any hit.
+/// Whether there are any hits.
 template <class Probe>
-class AnyHit {
+class AnyHits : public PacketQuery<Probe> {
+  using Base = PacketQuery<Probe>;
+  using Base::live_, Base::packet_, Base::probe, Base::rays_, Base::reach_of, Base::scene_;
+
  public:
-  HWY_INLINE AnyHit(const Scene& scene, const BrickRay& ray, Probe& probe)
-      : scene_(scene), ray_(ray), probe_(probe), interval_(ray) {}
+  using Base::Base;
 
-  float tmax() const { return interval_.after; }
-
-  HWY_INLINE void visit(const Leaf& leaf) {
-    for (std::uint32_t i = leaf.next_block(0); i < leaf.triangles;
-         i = leaf.next_block(i + LeafWords::block)) {
-      const TriangleRows block = leaf.block(i);
-      for (std::uint32_t first = 0; first < block.count && !hit_; first += lanes) {
-        count_block(block, first, probe_);
-        const BlockTest test = test_block(ray_, block, first, leaf.reach);
-        if (test.candidates == 0) continue;
-        const auto [possible, certain] = test.within(interval_);
-        hit_ = certain != 0;
-        for (std::uint64_t candidates = possible; candidates != 0 && !hit_; candidates &= candidates - 1) {
-          const auto lane = static_cast<unsigned>(std::countr_zero(candidates));
-          probe_.decide();
-          hit_ = decide_any(ray_, block, first + lane, (test.inside() >> lane & 1u) != 0, leaf.reach);
-        }
-      }
-      if (hit_) return found();
-    }
-    if (!leaf.others.empty()) visit_others(leaf.others);
+  HWY_INLINE void consider_triangle(const LeafBlock& block, std::size_t i, std::size_t v,
+                                    const BlockTest& test) {
+    const auto [possible, certain] = test.within(packet_.intervals(v), test.bounds());
+    hit(packet_bits(certain, v));
+    const PacketMask open = packet_bits(possible & ~certain, v);
+    if (open != 0) decide_on(open, block, i, packet_bits(test.inside(), v));
   }
-  bool done() const { return hit_; }
-  std::uint8_t answer() const { return hit_; }
-
- private:
-  /// Nothing else matters.
-  HWY_INLINE void found() {
-    hit_ = true;
-    interval_.after = -std::numeric_limits<float>::infinity();
-  }
-  HWY_NOINLINE void visit_others(std::span<const std::uint32_t> others) {
-    const FilterRay filter(*ray_.ray);
-    for (std::size_t i = 0; i < others.size() && !hit_; ++i)
-      hit_ = test_any(scene_, others[i], filter, probe_);
-    if (hit_) found();
-  }
-
-  const Scene& scene_;
-  const BrickRay& ray_;
-  Probe& probe_;
-  FilterInterval interval_;
-  bool hit_ = false;
-};
-
-/// A query of a ray, asked by the same ray with its origin moved along.
-template <class Query>
-class MovedQuery {
- public:
-  /// `moved` begins where `ray` is at t = `by` of its given direction.
-  MovedQuery(Query& query, const BrickRay& ray, double by)
-      : query_(query), by_(by * ray.scale), moved_(2 * (1 + 0x1p-20f) * static_cast<float>(by_)) {}
-  float tmax() const { return -float_below(by_ - double(query_.tmax())) * (1 + 0x1p-20f); }
-  void visit(const Leaf& leaf) {
-    Leaf seen = leaf;
-    seen.reach += moved_;
-    query_.visit(seen);
-  }
-  bool done() const { return query_.done(); }
-
- private:
-  Query& query_;
-  double by_;    // in scaled t
-  float moved_;  // the 1-norm
-};
-
-/// For a ray that BrickWalk is not proved for: from where it enters the scene, if that is all, else without a
-/// walk. visit_root(walk, query): what there is to do at a root for the walk's only ray.
-template <class Query, class Answer, class Grid, class Probe, class VisitRoot>
-HWY_NOINLINE Answer answer_special(const Grid& grid, const Scene& scene, const Ray& ray, Probe& probe,
-                                   const VisitRoot& visit_root) {
-  if (!is_traceable(ray)) return {};
-  const WalkRay walk_ray(ray);
-  if (!too_far(walk_ray, grid.space)) {
-    const WalkInterval interval = clip(walk_ray, ray, grid.space.low, grid.space.high);
-    if (interval.empty()) return {};
-    Ray moved = ray;
-    moved.origin = to_float(walk_ray.origin + interval.enter * walk_ray.direction);
-    if (moved.tnear > 0) moved.tnear = 0;
-    moved.tfar = std::numeric_limits<float>::infinity();
-    BrickWalk walk(grid, {&moved, 1});
-    if (walk.taken() != 0) {
-      BrickRay unmoved = walk.ray(0);
-      unmoved.ray = &ray;
-      Query query(scene, unmoved, probe);
-      MovedQuery<Query> moved_query(query, unmoved, interval.enter);
-      while (walk.next_roots(probe) != 0) {
-        visit_root(walk, moved_query);
-        walk.end(0, moved_query.tmax());
-      }
-      return query.answer();
+  HWY_INLINE void consider_ray(const LeafBlock& block, std::size_t ray, const BlockTest& test) {
+    const PacketMask one = PacketMask{1} << ray;
+    const auto [possible, certain] = test.within(packet_.interval_in_all_lanes(ray), test.bounds());
+    if (certain != 0) return hit(one);
+    for (std::uint64_t rest = possible; rest != 0 && (live_ & one) != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      probe(ray).decide();
+      decide_one(ray, block, i, test.inside() >> i & 1u);
     }
   }
-  if constexpr (std::is_same_v<Answer, Hit>)
-    return closest_of_all(scene, ray, probe);
-  else
-    return any_of_all(scene, ray, probe);
-}
+  HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
+    for_each_ray(active, [&](std::size_t ray) {
+      if (test_any(scene_, primitive, FilterRay(rays_[ray]), probe(ray))) hit(PacketMask{1} << ray);
+    });
+  }
+
+  void finish() {}
+  bool answer(std::size_t ray) const { return hits_ >> ray & 1u; }
+
+ private:
+  /// `inside`: the rays that certainly pass inside.
+  HWY_NOINLINE void decide_on(PacketMask open, const LeafBlock& block, std::size_t i, PacketMask inside) {
+    for_each_ray(open, [&](std::size_t ray) { probe(ray).decide(); });
+    if (std::popcount(open) > few) {
+      PacketFloats t{};
+      const PacketMask decided = decide_planes(
+          packet_, open,
+          [&](std::size_t row, std::size_t) { return hn::Set(Doubles(), double(block.coordinate(row, i))); },
+          t);
+      PacketMask met = 0;
+      for (std::size_t v = 0; v < packet_vectors; ++v)
+        met |= packet_bits(bits_of(hn::Lt(t.get(v), hn::Set(Floats(), no_hit))), v);
+      hit(decided & met & inside);
+      open &= ~decided | (met & ~inside);
+    }
+    for_each_ray(open, [&](std::size_t ray) { decide_one(ray, block, i, inside >> ray & 1u); });
+  }
+  HWY_INLINE void decide_one(std::size_t ray, const LeafBlock& block, std::size_t i, bool inside) {
+    const Ray& given = rays_[ray];
+    if (decide_any(given, packet_.scale[ray], block.rows(), block.column(i), inside,
+                   reach_of(block.triangle(i), given)))
+      hit(PacketMask{1} << ray);
+  }
+  void hit(PacketMask rays) {
+    hits_ |= rays;
+    live_ &= ~rays;
+  }
+
+  /// So many rays are decided sooner one by one.
+  static constexpr int few = 3;
+  PacketMask hits_ = 0;
+};
 
 }  // namespace raymeter::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -155,7 +155,7 @@ class PacketFrustum {
     return hn::OddEven(hn::Max(at0, at1), hn::Min(at0, at1));
   }
 
-  /// The occupied cells of a brick that any of the rays may pierce, as BrickRay::pierced gives them.
+  /// The occupied cells of a brick that any of the rays may pierce, mirrored into their octant.
   HWY_INLINE std::uint64_t pierced(const BrickNode& node) const {
     const std::uint64_t cells = mirrored(node.occupied, octant_);
     const std::uint64_t ku = pair(node, u_low), kv = pair(node, v_low);

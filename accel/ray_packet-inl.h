@@ -41,8 +41,9 @@ HWY_INLINE void for_each_ray(PacketMask rays, F&& f) {
 }
 
 /// A number for each ray of a packet.
-template <class Tag>
+template <class D>
 struct alignas(64) PacketNumbers {
+  using Tag = D;
   using Number = hn::TFromD<Tag>;
   std::array<Number, packet_size> numbers;
 
@@ -66,13 +67,28 @@ HWY_INLINE FloatVec3 in_all_lanes(const PacketFloats3& numbers, std::size_t ray)
   return {hn::Set(d, numbers[0][ray]), hn::Set(d, numbers[1][ray]), hn::Set(d, numbers[2][ray])};
 }
 
-/// What BrickRay and FilterInterval are for one ray.
+/// Rays made ready to be traced, in floats. All t here are for directions scaled by a power of two to a
+/// 1-norm of 1..2.
+///
+/// Why no cell of a brick is missed. The t at which a ray crosses a plane, (low + i * size - origin) /
+/// direction, is computed as (low - origin) * inverse + i * (size * inverse): off by no more than some 2^-24
+/// of itself and some 2^-24 of what the extent of the brick on that axis is in t. The former is made up for
+/// by `slack` wherever the t of planes are compared (as Ize, "Robust BVH Ray Traversal", 2013), the latter by
+/// the margin by which bricks and cells are grown before primitives are registered (brick_build.cpp). A
+/// direction below 2^-40 on an axis is taken for that: the ray, which starts near the scene, is moved by less
+/// than the margin. Neighbouring cells have the plane between them in common, and t grow with the planes'
+/// numbers however they are rounded.
 struct RayPacket {
-  PacketFloats3 origin, direction, inverse;  ///< the latter two as in BrickRay
-  PacketFloats scale, tnear, tfar;
-  PacketFloats before, after, inside_from, inside_to;  ///< FilterInterval
+  PacketFloats3 origin;
+  PacketFloats3 direction;   ///< scaled
+  PacketFloats3 inverse;     ///< of that; 2^40 in place of infinity
+  PacketFloats scale;        ///< a power of two: scaled t are t * scale
+  PacketIndices octant;      ///< the set of axes along which it goes down, bit by bit
+  PacketFloats tnear, tfar;  ///< as given
+  PacketFloats before, after, inside_from, inside_to;  ///< LaneIntervals
 
-  /// Reads packet_size rays. Returns the ones that floats do for, as BrickWalk does.
+  /// Reads packet_size rays. Returns the ones for which floats do: not those that start far away, or look
+  /// behind their origin, or whose direction would leave the range of floats.
   HWY_INLINE PacketMask load(const Ray* rays, const FloatGrid& grid) {
     const Floats d;
     const Integers di;
@@ -97,6 +113,7 @@ struct RayPacket {
                         inverse_power = hn::BitCast(d, hn::Sub(hn::Set(di, 0x7f000000), exponent));
       auto sound = hn::And(hn::And(hn::Gt(norm, hn::Set(d, 0x1p-100f)), hn::Lt(norm, hn::Set(d, 0x1p100f))),
                            hn::And(hn::Ge(start[3], hn::Zero(d)), hn::Eq(end[3], end[3])));
+      IntegerVector down = hn::Zero(di);
       for (std::size_t a = 0; a < 3; ++a) {
         sound = hn::And(sound, hn::And(hn::Ge(start[a], hn::Set(d, grid.nearby_low[a])),
                                        hn::Le(start[a], hn::Set(d, grid.nearby_high[a]))));
@@ -105,7 +122,10 @@ struct RayPacket {
         direction[a].set(v, along);
         inverse[a].set(
             v, hn::Div(hn::Set(d, 1.0f), hn::CopySign(hn::Max(hn::Abs(along), hn::Set(d, 0x1p-40f)), along)));
+        const auto is_down = hn::RebindMask(di, hn::Lt(inverse[a].get(v), hn::Zero(d)));
+        down = hn::Or(down, hn::IfThenElseZero(is_down, hn::Set(di, 1 << a)));
       }
+      octant.set(v, hn::BitCast(PacketIndices::Tag(), down));
       taken |= packet_bits(bits_of(sound), v);
       scale.set(v, power);
       tnear.set(v, start[3]);
@@ -124,6 +144,51 @@ struct RayPacket {
     return taken;
   }
 
+  /// The occupied cells of a brick that a ray pierces within its interval.
+  HWY_INLINE std::uint64_t pierced(std::size_t ray, const BrickNode& node) const {
+    const Floats d;
+    const PlaneTables& planes = planes_by_octant[octant[ray]];
+    // Where it crosses the first plane of an axis, and how far apart the next ones are.
+    const auto first = [&](std::size_t a) {
+      return hn::Mul(hn::Sub(hn::Set(d, node.low[a]), hn::Set(d, origin[a][ray])),
+                     hn::Set(d, inverse[a][ray]));
+    };
+    const auto step = [&](std::size_t a) {
+      return hn::Mul(hn::Set(d, node.size[a]), hn::Set(d, inverse[a][ray]));
+    };
+    const FloatVector x = first(0), y = first(1), z = first(2);
+    const FloatVector dx = step(0), dy = step(1), dz = step(2);
+
+    FloatVector z_enter[4], z_leave[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      z_enter[i] = hn::MulAdd(hn::Set(d, planes.z_enter[i]), dz, z);
+      z_leave[i] = hn::MulAdd(hn::Set(d, planes.z_leave[i]), dz, z);
+    }
+    const FloatVector x_enter = hn::MulAdd(hn::Load(d, planes.x_enter.data()), dx, x);
+    const FloatVector x_leave = hn::MulAdd(hn::Load(d, planes.x_leave.data()), dx, x);
+    constexpr float slack = 0x1p-20f;
+    const FloatVector earlier = hn::Set(d, 1 - slack), later = hn::Set(d, 1 + slack);
+    hn::Mask<Floats> layers[4 * widest_vector / lanes];
+    for (std::size_t v = 0; v < widest_vector / lanes; ++v) {
+      const FloatVector y_enter = hn::MulAdd(hn::Load(d, &planes.y_enter[v * lanes]), dy, y);
+      const FloatVector y_leave = hn::MulAdd(hn::Load(d, &planes.y_leave[v * lanes]), dy, y);
+      const FloatVector enter = hn::Max(hn::Mul(hn::Max(x_enter, y_enter), earlier), hn::Set(d, before[ray]));
+      const FloatVector leave = hn::Min(hn::Mul(hn::Min(x_leave, y_leave), later), hn::Set(d, after[ray]));
+      for (std::size_t i = 0; i < 4; ++i)
+        layers[i * (widest_vector / lanes) + v] =
+            hn::Le(hn::Max(enter, z_enter[i]), hn::Min(leave, z_leave[i]));
+    }
+#if HWY_TARGET == HWY_AVX3
+    // Of masks in registers of their own.
+    const auto cells = _cvtmask64_u64(_mm512_kunpackd(_mm512_kunpackw(layers[3].raw, layers[2].raw),
+                                                      _mm512_kunpackw(layers[1].raw, layers[0].raw)));
+#else
+    std::uint64_t cells = 0;
+    for (std::size_t i = 0; i < std::size(layers); ++i) cells |= bits_of(layers[i]) << (lanes * i);
+#endif
+    return cells & node.occupied;
+  }
+
   HWY_INLINE LaneIntervals intervals(std::size_t v) const {
     return {before.get(v), after.get(v), inside_from.get(v), inside_to.get(v)};
   }
@@ -133,8 +198,7 @@ struct RayPacket {
             hn::Set(d, inside_to[ray])};
   }
 
-  /// Where the rays are in a box, within their intervals: calls f(v, enter, leave) for each vector. As in
-  /// BrickRay, to whose proof this belongs.
+  /// Where the rays are in a box, within their intervals: calls f(v, enter, leave) for each vector.
   template <class F>
   HWY_INLINE void clip(const std::array<float, 3>& low, const std::array<float, 3>& extent, F&& f) const {
     const Floats d;

@@ -7,9 +7,12 @@
 #define RAYMETER_TRIANGLE_BLOCK_INL
 #endif
 
-#include "accel/brick_ray-inl.h"
+#include <cfloat>
+
+#include "accel/brick_cells-inl.h"
 #include "accel/triangle_rows.h"
 #include "scenes/geometry/decide.h"
+#include "scenes/geometry/rounding.h"
 #include "scenes/geometry/vec3.h"
 
 #if HWY_TARGET != HWY_SCALAR
@@ -33,21 +36,19 @@ HWY_INLINE FloatVec3 minus(const FloatVec3& a, const FloatVec3& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
 
-/// An interval of scaled t, in floats: outside and inside of what is certain.
-struct FilterInterval {
-  /// Of the given ray.
-  explicit HWY_INLINE FilterInterval(const BrickRay& ray)
-      : before(ray.scaled_down(ray.ray->tnear)),
-        after(ray.scaled_up(ray.ray->tfar)),
-        inside_from(ray.scaled_up(ray.ray->tnear)),
-        inside_to(ray.scaled_down(ray.ray->tfar)) {}
+/// A t of a ray as one of the ray with its direction over `scale`, a power of two: at least that, or at most,
+/// by more than all roundings.
+inline float scaled_up(float t, float scale) {
+  return std::max(t, FLT_MIN) * scale * (1 + 0x1p-20f) + FLT_MIN;
+}
+inline float scaled_down(float t, float scale) {
+  return std::min(t, FLT_MAX) * scale * (1 - 0x1p-20f);
+}
 
-  float before, after;           ///< nothing at or below `before`, or above `after`, matters
-  float inside_from, inside_to;  ///< everything between these does
-};
-/// The same, one in each lane.
+/// Intervals of scaled t: outside and inside of what is certain.
 struct LaneIntervals {
-  FloatVector before, after, inside_from, inside_to;
+  FloatVector before, after;           ///< nothing at or below `before`, or above `after`, matters
+  FloatVector inside_from, inside_to;  ///< everything between these does
 };
 
 /// Rays against triangles, lane by lane: one in all lanes against several.
@@ -69,6 +70,14 @@ struct BlockTest {
   struct Bounds {
     FloatVector least_det, greatest_det, lowest, highest;
     hn::Mask<Floats> steep;  ///< t is known at all
+
+    /// Of t, where it is certain.
+    HWY_INLINE FloatVector least_t() const {
+      return hn::Mul(hn::Div(lowest, greatest_det), hn::Set(Floats(), 1 - 0x1p-20f));
+    }
+    HWY_INLINE FloatVector greatest_t() const {
+      return hn::Mul(hn::Div(highest, least_det), hn::Set(Floats(), 1 + 0x1p-20f));
+    }
   };
   HWY_INLINE Bounds bounds() const {
     const Floats d;
@@ -97,12 +106,6 @@ struct BlockTest {
                                  hn::Le(t.highest, hn::Mul(interval.inside_to, t.least_det)));
     const std::uint64_t possible = candidates & ~bits_of(hn::And(t.steep, beyond));
     return {possible, possible & inside() & bits_of(hn::And(t.steep, between))};
-  }
-  HWY_INLINE Hits within(const FilterInterval& interval) const {
-    const Floats d;
-    return within({hn::Set(d, interval.before), hn::Set(d, interval.after), hn::Set(d, interval.inside_from),
-                   hn::Set(d, interval.inside_to)},
-                  bounds());
   }
 };
 
@@ -165,18 +168,13 @@ HWY_INLINE std::uint64_t lanes_from(const TriangleRows& rows, std::uint32_t firs
   return (std::uint64_t{1} << std::min<std::size_t>(rows.count - first, lanes)) - 1;
 }
 
-HWY_INLINE FloatVec3 in_all_lanes(const float* v) {
-  const Floats d;
-  return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
-}
-
-/// A ray against these. `reach`: an upper bound of the 1-norm from its origin to some point of each one's
-/// bounding box.
-HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, std::uint32_t first,
-                                float reach) {
+/// A ray, in all lanes, against these. `reach`: an upper bound of the 1-norm from its origin to some point of
+/// each one's bounding box.
+HWY_INLINE BlockTest test_block(const FloatVec3& origin, const FloatVec3& direction, const TriangleRows& rows,
+                                std::uint32_t first, float reach) {
   const Floats d;
   return test_lanes(
-      in_all_lanes(&ray.ray->origin.x), in_all_lanes(ray.direction.data()), triangles_of(rows, first),
+      origin, direction, triangles_of(rows, first),
       [&] { return hn::LoadU(d, rows.row(TriangleRows::edge_row) + first); }, hn::Set(d, reach),
       lanes_from(rows, first));
 }
@@ -187,40 +185,49 @@ HWY_INLINE BlockTest test_block(const BrickRay& ray, const TriangleRows& rows, s
 struct PlaneHit {
   double height, det, height_error, det_error;
 
-  HWY_INLINE PlaneHit(const BrickRay& ray, const Triangle& triangle, double edge, double reach) {
-    const Vec3d d = to_double(ray.ray->direction), ta = to_double(triangle.a),
-                a = ta - to_double(ray.ray->origin);
+  /// `scale`: at least half of the 1-norm of the direction.
+  HWY_INLINE PlaneHit(const Ray& ray, double scale, const Triangle& triangle, double edge, double reach) {
+    const Vec3d d = to_double(ray.direction), ta = to_double(triangle.a), a = ta - to_double(ray.origin);
     const Vec3d n = cross(to_double(triangle.b) - ta, to_double(triangle.c) - ta);
     const double signed_det = dot(d, n), signed_height = dot(a, n);
     det = std::abs(signed_det);
     height = signed_det < 0 ? -signed_height : signed_height;
     constexpr double error = 10 * 0x1p-53;
     const double area_error = error * edge * edge;
-    det_error = area_error * (2 * double(ray.scale));
+    det_error = area_error * (2 * scale);
     height_error = area_error * (reach + 2 * edge);
+  }
+  struct Bounds {
+    float low, high;
+  };
+  /// Bounds of t as a float, where it is known.
+  HWY_INLINE Bounds t() const {
+    const double inverse = 1 / det, t = height * inverse;
+    const double error = 1.01 * (height_error + std::abs(t) * det_error) * inverse + 0x1p-50 * std::abs(t);
+    return {rounded(t - error), rounded(t + error)};
   }
   /// Whether the errors leave something to be said.
   bool known() const { return det_error < 0x1p-10 * det; }
 };
 
 /// Whether `decide` gives a hit, for a candidate of test_block. `inside`: as of that.
-HWY_INLINE bool decide_any(const BrickRay& ray, const TriangleRows& rows, std::uint32_t column, bool inside,
-                           float reach) {
+HWY_INLINE bool decide_any(const Ray& ray, float scale, const TriangleRows& rows, std::uint32_t column,
+                           bool inside, float reach) {
   const Triangle triangle = rows.triangle(column);
-  const PlaneHit plane(ray, triangle, rows.edge(column), reach);
+  const PlaneHit plane(ray, scale, triangle, rows.edge(column), reach);
   if (plane.known()) {
     // Room for the rounding of t to a float.
     constexpr double more = 1 + 0x1p-22, less = 1 - 0x1p-22;
     const double low = plane.height - plane.height_error, high = plane.height + plane.height_error;
     const double least_det = plane.det - plane.det_error, greatest_det = plane.det + plane.det_error;
-    const double tnear = ray.ray->tnear, tfar = ray.ray->tfar;
+    const double tnear = ray.tnear, tfar = ray.tfar;
     if (high < tnear * less * least_det || low > std::max(tfar, double(FLT_MIN)) * more * greatest_det)
       return false;
     if (inside && low > std::max(tnear, double(FLT_MIN)) * more * greatest_det &&
         high < std::min(tfar, double(FLT_MAX)) * less * least_det)
       return true;
   }
-  return decide(*ray.ray, triangle) != no_hit;
+  return decide(ray, triangle) != no_hit;
 }
 
 }  // namespace raymeter::HWY_NAMESPACE

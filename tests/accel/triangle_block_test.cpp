@@ -44,11 +44,16 @@ namespace {
 void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
                std::span<TriangleClaim> claims) {
   const FlushDenormals mode;
-  const Vec3 direction = filter.direction;
-  const BrickRay ray{
-      &filter.ray, {direction.x, direction.y, direction.z}, {}, static_cast<float>(filter.scale), 0};
-  FilterInterval interval(ray);
-  interval.after = std::min(interval.after, ray.scaled_up(tmax));
+  const Floats d;
+  const auto in_lanes = [&](const Vec3& v) {
+    return FloatVec3{hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+  };
+  const FloatVec3 origin = in_lanes(filter.ray.origin), direction = in_lanes(filter.direction);
+  const auto scale = static_cast<float>(filter.scale);
+  const float tnear = filter.ray.tnear, tfar = filter.ray.tfar;
+  const LaneIntervals interval{hn::Set(d, scaled_down(tnear, scale)),
+                               hn::Set(d, std::min(scaled_up(tfar, scale), scaled_up(tmax, scale))),
+                               hn::Set(d, scaled_up(tnear, scale)), hn::Set(d, scaled_down(tfar, scale))};
   const TriangleRows rows{words, static_cast<std::uint32_t>(claims.size())};
   float reach = 0;
   for (std::uint32_t i = 0; i < rows.count; ++i) {
@@ -62,13 +67,13 @@ void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
     reach = std::max(reach, -float_below(-nearest));
   }
   for (std::uint32_t first = 0; first < rows.count; first += lanes) {
-    const BlockTest test = test_block(ray, rows, first, reach);
-    const auto [possible, certain] = test.within(interval);
+    const BlockTest test = test_block(origin, direction, rows, first, reach);
+    const auto [possible, certain] = test.within(interval, test.bounds());
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
       const auto claimed = [&](std::uint64_t lanes_of) { return (lanes_of >> lane & 1u) != 0; };
       const std::uint32_t i = first + lane;
       if (i < rows.count) {
-        const PlaneHit plane(ray, rows.triangle(i), rows.edge(i), reach);
+        const PlaneHit plane(filter.ray, scale, rows.triangle(i), rows.edge(i), reach);
         claims[i] = {claimed(possible), claimed(test.inside()), claimed(certain), plane.known(), plane.height,
                      plane.det,         plane.height_error,     plane.det_error};
       } else {
