@@ -1,5 +1,5 @@
-// How rays are taken one by one to the leaves of a grid, for the instruction set of HWY_TARGET: included once
-// for each.
+// How the rays of a batch are answered, one by one where they are not traced together, for the instruction
+// set of HWY_TARGET: included once for each.
 #if defined(RAYMETER_ANSWER_RAYS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYMETER_ANSWER_RAYS_INL
 #undef RAYMETER_ANSWER_RAYS_INL
@@ -10,13 +10,17 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <type_traits>
 
 #include "accel/brick_walk-inl.h"
 #include "accel/leaf_queries-inl.h"
+#include "accel/structure.h"
 #include "accel/walk_space.h"
+#include "scenes/base/float_mode.h"
+#include "scenes/geometry/rounding.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
@@ -42,10 +46,7 @@ HWY_INLINE void visit_leaf(const Leaf& leaf, const RayPacket& packet, std::size_
       if ((queries.live() & one) == 0) return;
     }
   }
-  for (const std::uint32_t primitive : leaf.others) {
-    queries.consider_other(primitive, one);
-    if ((queries.live() & one) == 0) return;
-  }
+  if (!leaf.others.empty()) queries.consider_others(leaf.others, one);
 }
 
 /// How rays are taken to the leaves of a grid. `Tracer` has
@@ -77,8 +78,9 @@ HWY_INLINE void trace_singly(const Tracer& tracer, const RayPacket& packet, Pack
   }
 }
 
-/// Traces a ray that floats don't do for from where it enters the scene, if it only starts too far away.
-/// False if there is more to it.
+/// Traces a ray that floats don't do for, from where it enters the scene, if it only starts too far away.
+/// False if there is more to it. `packet` has the ray as given, at `index`: what it asks of triangles is for
+/// that.
 template <class Tracer, class Queries, class Probe>
 HWY_NOINLINE bool trace_from_afar(const Tracer& tracer, const FloatGrid& grid, const WalkSpace& space,
                                   const Ray& ray, const RayPacket& packet, std::size_t index,
@@ -92,19 +94,27 @@ HWY_NOINLINE bool trace_from_afar(const Tracer& tracer, const FloatGrid& grid, c
   moved[0].origin = to_float(walk_ray.origin + interval.enter * walk_ray.direction);
   if (moved[0].tnear > 0) moved[0].tnear = 0;
   moved[0].tfar = std::numeric_limits<float>::infinity();
-  RayPacket start;
+  RoundedRay start;
   if ((start.load(moved.data(), grid) & 1u) == 0) return false;
-  queries.begin(PacketMask{1} << index);
+  // Half a unit in the last place of any coordinate in the box; the grid's margin pays for that, too.
+  double greatest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    greatest = std::max({greatest, std::abs(space.low[axis]), std::abs(space.high[axis])});
+  start.margin = static_cast<float>(greatest * 0x1p-23);
+
   const double by = interval.enter * double(packet.scale[index]);
   // The 1-norm of the way.
   const float way = 2 * (1 + 0x1p-20f) * static_cast<float>(by);
+  const auto end = [&] { start.after[0] = -float_below(by - double(packet.after[index])) * (1 + 0x1p-20f); };
+  end();
+  queries.begin(PacketMask{1} << index);
   BrickWalk walk = tracer.walk(start, 0, 1);
   while (walk.next_roots(probe) != 0) {
     tracer.visit_roots(walk, start, 0, 1, probe, [&](const Leaf& leaf, std::size_t) {
       Leaf seen = leaf;
       seen.reach += way;
       visit_leaf(seen, packet, index, queries, probe);
-      start.after[0] = -float_below(by - double(packet.after[index])) * (1 + 0x1p-20f);
+      end();
       return queries.live() == 0;
     });
     walk.end(0, queries.live() != 0 ? start.after[0] : -std::numeric_limits<float>::infinity());
@@ -152,6 +162,21 @@ HWY_INLINE void answer_rays(const Tracer& tracer, const FloatGrid& grid, const W
     else
       answers[ray] = any_of_all(scene, rays[ray], probe);
   });
+}
+
+/// Answers the rays of a batch. `counters`: one for each ray, if the probe counts.
+template <class Queries, class Tracer, class Answer, class Probe, class TraceSome>
+HWY_INLINE void answer_batch(const Tracer& tracer, const FloatGrid& grid, const WalkSpace& space,
+                             const Scene& scene, const BatchView& batch, std::span<Answer> answers,
+                             [[maybe_unused]] std::span<RayCounters> counters, Probe& probe,
+                             const TraceSome& trace_some) {
+  const FlushDenormals mode;
+  for (std::size_t i = 0; i < batch.rays.size(); i += packet_size) {
+    const std::size_t n = std::min(packet_size, batch.rays.size() - i);
+    if constexpr (!std::is_same_v<Probe, NoProbe>) probe.begin_rays(counters.subspan(i, n));
+    answer_rays<Queries>(tracer, grid, space, scene, batch.rays.subspan(i, n), answers.subspan(i, n), probe,
+                         trace_some);
+  }
 }
 
 }  // namespace raymeter::HWY_NAMESPACE

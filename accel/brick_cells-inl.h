@@ -9,11 +9,7 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cfloat>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 

@@ -6,12 +6,14 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <span>
 #include <type_traits>
 
 #include "accel/answer_rays-inl.h"
 #include "accel/brick_packet-inl.h"
-#include "scenes/base/float_mode.h"
 
 // Of the dozen instruction sets that Highway knows, the three between which speed differs much.
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
@@ -35,8 +37,8 @@ class TreeWalk {
     __builtin_prefetch(node_);
   }
   /// One node; false when there is no further one. visit(leaf, ray): whether the ray is done.
-  template <class Probe, class Visit>
-  HWY_INLINE bool step(const Bricks& bricks, const RayPacket& packet, std::size_t ray, Probe& probe,
+  template <class Packet, class Probe, class Visit>
+  HWY_INLINE bool step(const Bricks& bricks, const Packet& packet, std::size_t ray, Probe& probe,
                        const Visit& visit) {
     const BrickNode& node = *node_;
     const unsigned octant = packet.octant[ray];
@@ -81,15 +83,16 @@ class TreeWalk {
 
 /// The Tracer of answer_rays.
 struct BrickTracer {
+  static_assert(BrickWalk::no_root == Bricks::empty_cell);
   const Bricks& bricks;
 
   HWY_INLINE BrickWalk walk(const RayPacket& packet, std::size_t v, std::uint64_t which) const {
     return {bricks.grid, bricks.roots.data(), bricks.root_boxes.data(), packet, v, which};
   }
   /// Nodes of the rays in turn, so that one waits for memory while the others work.
-  template <class Probe, class Visit>
-  HWY_INLINE void visit_roots(const BrickWalk& walk, const RayPacket& packet, std::size_t v,
-                              std::uint64_t found, Probe& probe, const Visit& visit) const {
+  template <class Packet, class Probe, class Visit>
+  HWY_INLINE void visit_roots(const BrickWalk& walk, const Packet& packet, std::size_t v, std::uint64_t found,
+                              Probe& probe, const Visit& visit) const {
     std::array<TreeWalk, lanes> trees;
     for (std::uint64_t rest = found; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
@@ -126,45 +129,39 @@ HWY_INLINE PacketMask trace_packet(const Bricks& bricks, const RayPacket& packet
 }
 
 template <class Queries, class Answer, class Probe>
-HWY_INLINE void answer_batch(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
-                             std::span<Answer> answers, [[maybe_unused]] std::span<RayCounters> counters,
-                             Probe& probe) {
-  const FlushDenormals mode;
+HWY_INLINE void answer(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
+                       std::span<Answer> answers, std::span<RayCounters> counters, Probe& probe) {
   PacketSharing sharing;
-  for (std::size_t i = 0; i < batch.rays.size(); i += packet_size) {
-    const std::size_t n = std::min(packet_size, batch.rays.size() - i);
-    if constexpr (std::is_same_v<Probe, CountingProbe>) probe.begin_rays(counters.subspan(i, n));
-    const bool together =
-        use == PacketUse::always || (use == PacketUse::where_worth_while && sharing.worth_while());
-    answer_rays<Queries>(BrickTracer{bricks}, bricks.grid, bricks.space, scene, batch.rays.subspan(i, n),
-                         answers.subspan(i, n), probe,
-                         [&](const RayPacket& packet, PacketMask taken, Queries& queries) {
-                           return together ? trace_packet(bricks, packet, taken, queries, sharing, probe) : 0;
-                         });
-  }
+  answer_batch<Queries>(BrickTracer{bricks}, bricks.grid, bricks.space, scene, batch, answers, counters,
+                        probe, [&](const RayPacket& packet, PacketMask taken, Queries& queries) {
+                          const bool together =
+                              use == PacketUse::always ||
+                              (use == PacketUse::where_worth_while && sharing.worth_while());
+                          return together ? trace_packet(bricks, packet, taken, queries, sharing, probe) : 0;
+                        });
 }
 
 void trace_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
                    std::span<Hit> hits) {
   NoProbe probe;
-  answer_batch<ClosestHits<NoProbe>>(bricks, scene, batch, use, hits, {}, probe);
+  answer<ClosestHits<NoProbe>>(bricks, scene, batch, use, hits, {}, probe);
 }
 void trace_any(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
                std::span<std::uint8_t> occluded) {
   NoProbe probe;
-  answer_batch<AnyHits<NoProbe>>(bricks, scene, batch, use, occluded, {}, probe);
+  answer<AnyHits<NoProbe>>(bricks, scene, batch, use, occluded, {}, probe);
 }
 void count_closest(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
                    std::span<Hit> hits, std::span<RayCounters> counters) {
   using Probe = CountingProbe;
   Probe probe(scene.primitive_count());
-  answer_batch<ClosestHits<Probe>>(bricks, scene, batch, use, hits, counters, probe);
+  answer<ClosestHits<Probe>>(bricks, scene, batch, use, hits, counters, probe);
 }
 void count_any(const Bricks& bricks, const Scene& scene, const BatchView& batch, PacketUse use,
                std::span<std::uint8_t> occluded, std::span<RayCounters> counters) {
   using Probe = CountingProbe;
   Probe probe(scene.primitive_count());
-  answer_batch<AnyHits<Probe>>(bricks, scene, batch, use, occluded, counters, probe);
+  answer<AnyHits<Probe>>(bricks, scene, batch, use, occluded, counters, probe);
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 #endif
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <bit>
 #include <type_traits>
 #include <utility>
 
@@ -217,8 +218,8 @@ class PacketWalk {
         test_triangles(block, BlockEdges(triangles), kept);
       if (query_.live() == 0) return;
     }
-    for (std::uint32_t i = 0; i < leaf.others; ++i)
-      query_.consider_other(words[LeafWords::count(leaf.triangles) + i], active & query_.live());
+    if (leaf.others != 0)
+      query_.consider_others({words + LeafWords::count(leaf.triangles), leaf.others}, active & query_.live());
   }
   /// Each ray against the block.
   HWY_INLINE void test_rays(const LeafBlock& block, const LaneTriangles& triangles, std::uint64_t kept,

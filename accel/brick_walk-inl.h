@@ -6,7 +6,9 @@
 #define RAYMETER_BRICK_WALK_INL
 #endif
 
-#include <bit>
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <type_traits>
 
 #include "accel/probe.h"
@@ -26,6 +28,7 @@ namespace raymeter::HWY_NAMESPACE {
 /// registered in every cell that they come as near to as the margin of Bricks::space, which is more.
 class BrickWalk {
  public:
+  /// Of cells where there is nothing.
   static constexpr std::uint32_t no_root = 0xffffffffu;
 
   /// The rays that `which` has of vector v of the packet, which RayPacket::load says floats do for. `roots`:

@@ -35,7 +35,8 @@ FloatGrid::FloatGrid(const CellGrid& grid) {
 
 WalkSpace float_walk_space(const Scene& scene, const std::string& structure) {
   const Bounds box = scene.bounds();
-  WalkSpace space(box.empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : box, 0x1p-17);
+  // Of the coordinates for what is moved to where it enters, which is rounded to floats (trace_from_afar).
+  WalkSpace space(box.empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : box, 0x1p-17, 0x1p-22);
   for (int axis = 0; axis < 3; ++axis) {
     space.low[axis] = float_below(space.low[axis]);
     if (std::max(-space.low[axis], space.high[axis]) > 0x1p126)

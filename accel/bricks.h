@@ -53,9 +53,10 @@ struct LeafWords {
   static std::size_t masks(std::size_t triangles) {
     return has_masks(triangles) ? (triangles + block - 1) / block : 0;
   }
-  /// Where a leaf may begin, from `word` on: whole blocks begin with a line of the cache.
+  /// Where a leaf of bricks may begin, from `word` on: whole blocks begin with a line of the cache.
   static std::uint64_t begin(std::uint64_t word, std::size_t triangles) {
-    return triangles < block ? word : (word + 15) / 16 * 16;
+    constexpr std::size_t line = cache_line / sizeof(std::uint32_t);
+    return triangles < block ? word : (word + line - 1) / line * line;
   }
   /// Without the others.
   static std::size_t count(std::size_t triangles) {

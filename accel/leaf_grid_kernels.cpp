@@ -7,9 +7,9 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <span>
 
 #include "accel/answer_rays-inl.h"
-#include "scenes/base/float_mode.h"
 
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
 HWY_BEFORE_NAMESPACE();
@@ -18,56 +18,70 @@ namespace {
 
 /// The Tracer of answer_rays: each cell is a leaf.
 struct LeafGridTracer {
+  static_assert(BrickWalk::no_root == LeafGrid::empty_cell);
   const LeafGrid& grid;
 
   HWY_INLINE BrickWalk walk(const RayPacket& packet, std::size_t v, std::uint64_t which) const {
     return {grid.grid, grid.leaves.data(), nullptr, packet, v, which};
   }
   template <class Probe, class Visit>
-  HWY_INLINE void visit_roots(const BrickWalk& walk, const RayPacket&, std::size_t v, std::uint64_t found,
-                              Probe& probe, const Visit& visit) const {
+  HWY_INLINE void visit_roots(const BrickWalk& walk, const RayPacket& packet, std::size_t v,
+                              std::uint64_t found, Probe& probe, const Visit& visit) const {
     for (std::uint64_t rest = found; rest != 0; rest &= rest - 1)
       __builtin_prefetch(&grid.words[walk.root(static_cast<std::size_t>(std::countr_zero(rest)))]);
     for (std::uint64_t rest = found; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-      probe.cell_step(false);
-      visit(leaf_of(walk, lane), v * lanes + lane);
+      const std::uint32_t* const header = grid.words.data() + walk.root(lane);
+      if (header[0] == LeafGrid::subgrid) {
+        probe.inner_step();
+        probe.enter_subgrid();
+        visit_subgrid(grid.subgrids[header[1]], packet, v, lane, probe, visit);
+      } else {
+        probe.cell_step(false);
+        visit(leaf_of(header, walk.reach(lane)), v * lanes + lane);
+      }
     }
   }
 
  private:
-  /// The leaf of the cell that a ray is in.
-  HWY_INLINE Leaf leaf_of(const BrickWalk& walk, std::size_t lane) const {
-    const std::uint32_t* const header = grid.words.data() + walk.root(lane);
+  /// Walks a ray through the grid of the cell that it is in.
+  template <class Probe, class Visit>
+  HWY_NOINLINE void visit_subgrid(const LeafGrid::SubGrid& sub, const RayPacket& packet, std::size_t v,
+                                  std::size_t lane, Probe& probe, const Visit& visit) const {
+    const std::size_t ray = v * lanes + lane;
+    BrickWalk walk(sub.grid, grid.leaves.data() + sub.first_cell, nullptr, packet, v,
+                   std::uint64_t{1} << lane);
+    while (walk.next_roots(probe) != 0) {
+      probe.cell_step(false);
+      if (visit(leaf_of(grid.words.data() + walk.root(lane), walk.reach(lane)), ray)) return;
+      walk.end(lane, packet.after[ray]);
+    }
+  }
+
+  HWY_INLINE static Leaf leaf_of(const std::uint32_t* header, float reach) {
     const std::uint32_t triangles = header[0], others = header[1];
     const std::uint32_t* const words = header + LeafGrid::header;
-    return {words, triangles, {words + LeafWords::count(triangles), others}, walk.reach(lane), 1};
+    return {words, triangles, {words + LeafWords::count(triangles), others}, reach, 1};
   }
 };
 
 template <class Queries, class Answer, class Probe>
-void answer_batch(const LeafGrid& grid, const Scene& scene, const BatchView& batch, std::span<Answer> answers,
-                  [[maybe_unused]] std::span<RayCounters> counters, Probe& probe) {
-  const FlushDenormals mode;
-  for (std::size_t i = 0; i < batch.rays.size(); i += packet_size) {
-    const std::size_t n = std::min(packet_size, batch.rays.size() - i);
-    if constexpr (std::is_same_v<Probe, CountingProbe>) probe.begin_rays(counters.subspan(i, n));
-    answer_rays<Queries>(LeafGridTracer{grid}, grid.grid, grid.space, scene, batch.rays.subspan(i, n),
-                         answers.subspan(i, n), probe,
-                         [](const RayPacket&, PacketMask, Queries&) { return PacketMask{0}; });
-  }
+void answer(const LeafGrid& grid, const Scene& scene, const BatchView& batch, std::span<Answer> answers,
+            std::span<RayCounters> counters, Probe& probe) {
+  answer_batch<Queries>(LeafGridTracer{grid}, grid.grid, grid.space, scene, batch, answers, counters, probe,
+                        [](const RayPacket&, PacketMask, Queries&) { return PacketMask{0}; });
 }
 
 template <template <class> class Queries, class Answer>
 void trace(const LeafGrid& grid, const Scene& scene, const BatchView& batch, std::span<Answer> answers) {
   NoProbe probe;
-  answer_batch<Queries<NoProbe>>(grid, scene, batch, answers, {}, probe);
+  answer<Queries<NoProbe>>(grid, scene, batch, answers, {}, probe);
 }
 template <template <class> class Queries, class Answer>
 void count(const LeafGrid& grid, const Scene& scene, const BatchView& batch, std::span<Answer> answers,
            std::span<RayCounters> counters) {
   CountingProbe probe(scene.primitive_count());
-  answer_batch<Queries<CountingProbe>>(grid, scene, batch, answers, counters, probe);
+  answer<Queries<CountingProbe>>(grid, scene, batch, answers, counters, probe);
 }
 
 }  // namespace

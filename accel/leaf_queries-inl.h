@@ -6,6 +6,8 @@
 #define RAYMETER_LEAF_QUERIES_INL
 #endif
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <span>
@@ -28,12 +30,14 @@ struct Leaf {
   float reach = 0;
   std::uint64_t pierced = 0;  ///< cells
 
-  /// The first triangle of the first block from there on that may be hit, or the number of triangles.
+  /// Where the first block from there on begins that may be hit; no less than the number of triangles if
+  /// none.
   HWY_INLINE std::uint32_t next_block(std::uint32_t first) const {
     while (first < triangles && (pierced & LeafWords::cells(words, triangles, first)) == 0)
       first += LeafWords::block;
     return first;
   }
+  /// The one that begins there.
   TriangleRows block(std::uint32_t first) const { return LeafWords::rows(words, triangles, first); }
 };
 
@@ -152,11 +156,14 @@ class ClosestHits : public PacketQuery<Probe> {
       decide_on(ray, block, i, test.inside() >> i & 1u);
     }
   }
-  HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
+  /// Primitives that are not triangles.
+  HWY_NOINLINE void consider_others(std::span<const std::uint32_t> primitives, PacketMask active) {
     for_each_ray(active, [&](std::size_t ray) {
       settle(ray);
+      const FilterRay filter(rays_[ray]);
       Hit hit = answer(ray);
-      test_closest(scene_, primitive, FilterRay(rays_[ray]), hit, probe(ray));
+      for (const std::uint32_t primitive : primitives)
+        test_closest(scene_, primitive, filter, hit, probe(ray));
       take(ray, hit);
     });
   }
@@ -204,6 +211,7 @@ class ClosestHits : public PacketQuery<Probe> {
     }
     take_decided(ray, triangle, primitive, inside);
   }
+  /// Apart, for it is rare and long.
   HWY_NOINLINE void take_decided(std::size_t ray, const Triangle& triangle, std::uint32_t primitive,
                                  bool inside) {
     settle(ray);
@@ -261,9 +269,11 @@ class AnyHits : public PacketQuery<Probe> {
       decide_one(ray, block, i, test.inside() >> i & 1u);
     }
   }
-  HWY_NOINLINE void consider_other(std::uint32_t primitive, PacketMask active) {
+  HWY_NOINLINE void consider_others(std::span<const std::uint32_t> primitives, PacketMask active) {
     for_each_ray(active, [&](std::size_t ray) {
-      if (test_any(scene_, primitive, FilterRay(rays_[ray]), probe(ray))) hit(PacketMask{1} << ray);
+      const FilterRay filter(rays_[ray]);
+      if (std::ranges::any_of(primitives, [&](auto p) { return test_any(scene_, p, filter, probe(ray)); }))
+        hit(PacketMask{1} << ray);
     });
   }
 

@@ -22,7 +22,7 @@ void MemoryMeter::add(std::uint64_t bytes) {
 
 namespace {
 
-constexpr std::align_val_t line{64};
+constexpr std::align_val_t line{cache_line};
 
 void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE

@@ -33,9 +33,12 @@ class MemoryMeter {
   std::uint64_t limit_;
 };
 
+inline constexpr std::size_t cache_line = 64;  ///< bytes
+
 /// Memory that begins with a line of the cache. Where it is large the system is asked for huge pages: fewer
 /// pages to fetch and to look up. Embree asks for its memory, too. Throws std::bad_alloc.
 void* allocate_lines(std::size_t bytes);
+/// Of that; null is nothing.
 void free_lines(void* memory) noexcept;
 
 /// Lets a standard container charge its memory to a meter, which must outlive it.
@@ -43,7 +46,7 @@ template <class T>
 class MeteredAllocator {
  public:
   using value_type = T;
-  static_assert(alignof(T) <= 64);
+  static_assert(alignof(T) <= cache_line);
   using propagate_on_container_move_assignment = std::true_type;
   using propagate_on_container_swap = std::true_type;
 

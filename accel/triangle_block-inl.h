@@ -7,7 +7,9 @@
 #define RAYMETER_TRIANGLE_BLOCK_INL
 #endif
 
+#include <algorithm>
 #include <cfloat>
+#include <cmath>
 
 #include "accel/brick_cells-inl.h"
 #include "accel/triangle_rows.h"
@@ -197,11 +199,11 @@ struct PlaneHit {
     det_error = area_error * (2 * scale);
     height_error = area_error * (reach + 2 * edge);
   }
-  struct Bounds {
+  struct Interval {
     float low, high;
   };
   /// Bounds of t as a float, where it is known.
-  HWY_INLINE Bounds t() const {
+  HWY_INLINE Interval t() const {
     const double inverse = 1 / det, t = height * inverse;
     const double error = 1.01 * (height_error + std::abs(t) * det_error) * inverse + 0x1p-50 * std::abs(t);
     return {rounded(t - error), rounded(t + error)};

@@ -29,14 +29,14 @@ struct WalkSpace {
 
   WalkSpace() = default;
   /// `box` must not be empty. A walk that is less exact than those in double needs a margin of `of_diagonal`
-  /// of its diagonal.
-  explicit WalkSpace(const Bounds& box, double of_diagonal = 0x1p-32) {
+  /// of its diagonal, or of `of_magnitude` of its greatest coordinate.
+  explicit WalkSpace(const Bounds& box, double of_diagonal = 0x1p-32, double of_magnitude = 0x1p-45) {
     const double diagonal = box.diagonal();
     double magnitude = 0x1p-126;
     for (int axis = 0; axis < 3; ++axis)
       magnitude = std::max({magnitude, std::abs(double(box.low[axis])), std::abs(double(box.high[axis]))});
     // The second term keeps the margin well above the rounding of a coordinate, in a small box far from 0.
-    margin = std::max(diagonal * of_diagonal, magnitude * 0x1p-45);
+    margin = std::max(diagonal * of_diagonal, magnitude * of_magnitude);
     far_limit = diagonal * 0x1p16;
     low = to_double(box.low) - Vec3d{margin, margin, margin};
     high = to_double(box.high) + Vec3d{margin, margin, margin};

@@ -42,6 +42,11 @@ TEST_P(BrickGrid, AnswersLikeBruteForceInDeepTrees) {
   }
 }
 
+TEST_P(BrickGrid, HitsEdgesFromAfar) {
+  const std::string specs[] = {spec(""), spec("cells=8"), spec("cells=2:leaf=1")};
+  for (const float at : {0.0f, 1000.0f}) ASSERT_NO_FATAL_FAILURE(expect_edges_hit_from_afar(specs, at));
+}
+
 INSTANTIATE_TEST_SUITE_P(AllTargets, BrickGrid, testing::ValuesIn(brick_kernels()), [](const auto& test) {
   std::string name = test.param->isa;
   std::erase(name, '.');

@@ -214,6 +214,45 @@ inline void expect_brute_force(const Structure& structure, const Scene& scene, s
   }
 }
 
+/// Rays from afar that hit triangles exactly at their edges, which the boxes of cells end with: where they
+/// enter the scene is no float. `at`: where that is all.
+inline void expect_edges_hit_from_afar(std::span<const std::string> specs, float at) {
+  Random random(17, at == 0 ? 0 : 1);
+  for (int round = 0; round < 60; ++round) {
+    SceneData data;
+    data.name = "edges";
+    const auto add = [&](Vec3 a, Vec3 b, Vec3 c) {
+      const auto first = static_cast<std::uint32_t>(data.vertices.size());
+      for (const Vec3& v : {a, b, c}) data.vertices.push_back({v.x + at, v.y + at, v.z});
+      data.triangles.push_back({first, first + 1, first + 2});
+    };
+    add({-1, -1, 2}, {1, -1, 2}, {1, 1, 2});
+    std::vector<Ray> rays;
+    for (int i = 0; i < 20; ++i) {
+      // All sums below are exact.
+      const auto places = [&](float step) { return step * static_cast<float>(1 + random.below(4000)); };
+      const bool low = random.below(2) == 0, across_y = random.below(2) == 0;
+      const float edge = (low ? -1 : 1) * places(0x1p-12f), along = places(0x1p-13f),
+                  size = low ? 0x1p-10f : -0x1p-10f;
+      const float slope = places(0x1p-13f) * (random.below(2) == 0 ? 1 : -1);
+      const auto point = [&](float u, float v, float z) { return across_y ? Vec3{v, u, z} : Vec3{u, v, z}; };
+      add(point(edge, along, 0), point(edge + size, along, 0), point(edge, along + 0x1p-10f, 0));
+      const float t = 64 * static_cast<float>(1 << random.below(3));
+      const Vec3 from = point(edge - t * slope, along + 0x1p-11f, -t);
+      rays.push_back({{from.x + at, from.y + at, from.z}, 0, point(slope, 0, 1)});
+    }
+    const Scene scene(std::move(data));
+    std::size_t hits = 0;
+    for (const Ray& ray : rays)
+      for (std::uint32_t p = 1; p < scene.primitive_count(); ++p)
+        hits += decide(ray, scene.triangle(p)) != no_hit;
+    ASSERT_GE(hits, rays.size());
+    for (const std::string& spec : specs)
+      ASSERT_NO_FATAL_FAILURE(
+          expect_brute_force(*build(spec, scene), scene, rays, spec + ", round " + std::to_string(round)));
+  }
+}
+
 /// What one closest-hit query costs.
 inline RayCounters count(const Structure& structure, const Ray& ray) {
   RayCounters counters;

@@ -32,6 +32,12 @@ TEST_P(SimdLeaves, AnswersLikeBruteForce) {
       spec("tunable-grid:amount=2:fit=exact"),
       spec("tunable-grid:rule=pbrt"),
       spec("tunable-grid:cells=4"),
+      spec("two-level-grid"),
+      spec("two-level-grid:threshold=0"),
+      spec("two-level-grid:cells=3x4x5:threshold=1:leaf-density=20"),
+      spec("two-level-grid:amount=0.5:threshold=2:fit=box"),
+      spec("two-level-grid:cells=1:threshold=2:leaf-density=8"),
+      spec("two-level-grid:density=1:threshold=1000"),
   };
   expect_brute_force_on_many_scenes(specs, 700);
 }
@@ -42,7 +48,8 @@ TEST_P(SimdLeaves, AnswersLikeBruteForceInLargerScenes) {
         "stadium:triangles=1500", "clusters:objects=500:primitive=sphere"}) {
     const Scene scene = open_scene(name);
     const auto rays = hostile_rays(3, 150, scene);
-    for (const char* structure : {"grid", "tunable-grid", "tunable-grid:cells=1", "grid:amount=0.1"})
+    for (const char* structure : {"grid", "tunable-grid", "tunable-grid:cells=1", "grid:amount=0.1",
+                                  "two-level-grid", "two-level-grid:cells=2:threshold=1"})
       ASSERT_NO_FATAL_FAILURE(
           expect_brute_force(*build(spec(structure), scene), scene, rays, spec(structure) + " on " + name));
   }
@@ -75,12 +82,19 @@ TEST_P(SimdLeaves, AnswersLikeBruteForceToAnAdversary) {
         rays.push_back(ray);
       }
       for (const char* structure :
-           {"tunable-grid:cells=1", "tunable-grid:cells=9:fit=box", "tunable-grid:cells=5"})
+           {"tunable-grid:cells=1", "tunable-grid:cells=9:fit=box", "tunable-grid:cells=5",
+            "two-level-grid:cells=2:threshold=0:leaf-density=20"})
         ASSERT_NO_FATAL_FAILURE(expect_brute_force(
             *build(spec(structure), scene), scene, rays,
             spec(structure) + ", style " + std::to_string(int(style)) + ", round " + std::to_string(round)));
     }
   }
+}
+
+TEST_P(SimdLeaves, HitEdgesFromAfar) {
+  const std::string specs[] = {spec("tunable-grid:cells=16"), spec("tunable-grid:cells=100x100x1"),
+                               spec("two-level-grid:cells=5:threshold=0:leaf-density=30")};
+  for (const float at : {0.0f, 1000.0f}) ASSERT_NO_FATAL_FAILURE(expect_edges_hit_from_afar(specs, at));
 }
 
 INSTANTIATE_TEST_SUITE_P(AllTargets, SimdLeaves, testing::ValuesIn(leaf_grid_kernels()),
@@ -131,9 +145,32 @@ TEST(SimdLeavesBuild, CountsByHand) {
   EXPECT_EQ(c.tests, 2u);
 }
 
+TEST(SimdLeavesBuild, CountsByHandInTwoLevels) {
+  const Scene scene = two_walls();
+  // As in TwoLevelGrid.CountsByHand: two cells, in each a grid of 3 x 2 x 2 cells.
+  const auto grid = build("two-level-grid:cells=2x1x1:threshold=0:leaf-density=12:fit=box:leaf=simd", scene);
+  const auto scalar = build("two-level-grid:cells=2x1x1:threshold=0:leaf-density=12:fit=box", scene);
+  EXPECT_EQ(grid->stats().inner_nodes, 2u);
+  EXPECT_EQ(grid->stats().cells, 24u);
+  EXPECT_EQ(grid->stats().empty_cells, 16u);
+  EXPECT_EQ(grid->stats().references, 8u);
+  EXPECT_EQ(grid->stats().depth, 2u);
+  for (const Ray& ray : {Ray{{-1, 0.7f, 0.8f}, 0, {1, 0, 0}}, Ray{{-1, 0.2f, 0.3f}, 0, {1, 0, 0}},
+                         Ray{{-1, 2, 0.3f}, 0, {1, 0, 0}}, Ray{{-1e4f, 0.7f, 0.8f}, 0, {1, 0, 0}}}) {
+    const RayCounters c = count(*grid, ray), expected = count(*scalar, ray);
+    EXPECT_EQ(c.steps, expected.steps);
+    EXPECT_EQ(c.cell_steps, expected.cell_steps);
+    EXPECT_EQ(c.empty_cell_steps, expected.empty_cell_steps);
+    EXPECT_EQ(c.subgrids_entered, expected.subgrids_entered);
+    EXPECT_EQ(c.tests, expected.tests);
+    EXPECT_EQ(c.test_blocks, expected.tests) << "one triangle in a block";
+  }
+}
+
 TEST(SimdLeavesBuild, RegistersByTheGridsOwnRule) {
   const Scene scene = open_scene("soup:triangles=3000");
-  for (const char* spec : {"grid", "grid:amount=0.4", "tunable-grid", "tunable-grid:fit=box"}) {
+  for (const char* spec :
+       {"grid", "grid:amount=0.4", "tunable-grid", "tunable-grid:fit=box", "two-level-grid"}) {
     const auto scalar = build(spec, scene)->stats();
     const auto simd = build(std::string(spec) + ":leaf=simd", scene)->stats();
     EXPECT_EQ(simd.resolution, scalar.resolution) << spec;
@@ -160,6 +197,7 @@ TEST(SimdLeavesBuild, RefusesWhatItCanNotDo) {
             "tunable-grid: mailbox=on goes with leaf=scalar only");
   EXPECT_EQ(refusal("tunable-grid:isa=sse4.2"), "tunable-grid: isa=sse4.2 goes with leaf=simd only");
   EXPECT_EQ(refusal("grid:isa=sse4.2"), "grid: isa=sse4.2 goes with leaf=simd only");
+  EXPECT_EQ(refusal("two-level-grid:isa=sse4.2"), "two-level-grid: isa=sse4.2 goes with leaf=simd only");
   EXPECT_THROW(build("grid:leaf=wide", scene), Error);
   EXPECT_THROW(build("grid:leaf=simd", scene, 50'000), MemoryLimitExceeded);
   SceneData data;

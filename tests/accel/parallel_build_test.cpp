@@ -111,9 +111,9 @@ TEST(ParallelBuild, EveryStructureCostsTheSameForAnyNumberOfThreads) {
   for (const char* name : {"soup:triangles=3000", "clusters:objects=3000", "terrain:triangles=3000"}) {
     const Scene scene = open_scene(name);
     const auto rays = hostile_rays(7, 200, scene);
-    for (const char* spec :
-         {"grid", "tunable-grid:mailbox=on", "octree", "octree:traversal=top-down", "two-level-grid",
-          "two-level-grid:threshold=1:fit=box", "brick-grid", "grid:leaf=simd", "tunable-grid:leaf=simd"}) {
+    for (const char* spec : {"grid", "tunable-grid:mailbox=on", "octree", "octree:traversal=top-down",
+                             "two-level-grid", "two-level-grid:threshold=1:fit=box", "brick-grid",
+                             "grid:leaf=simd", "tunable-grid:leaf=simd", "two-level-grid:leaf=simd"}) {
       const std::string one = seen_from_outside(spec, scene, rays, 1);
       EXPECT_EQ(seen_from_outside(spec, scene, rays, 2), one) << spec << " on " << name;
       EXPECT_EQ(seen_from_outside(spec, scene, rays, 6), one) << spec << " on " << name;

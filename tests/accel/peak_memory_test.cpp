@@ -57,7 +57,7 @@ TEST(PeakMemory, IsWhatTheBuildTakesFromTheSystem) {
     const Scene scene = open_scene(name);
     for (const char* spec :
          {"grid", "tunable-grid", "octree", "octree:traversal=top-down:leaf=1", "two-level-grid",
-          "two-level-grid:threshold=1", "brick-grid", "grid:leaf=simd"}) {
+          "two-level-grid:threshold=1", "brick-grid", "grid:leaf=simd", "two-level-grid:leaf=simd"}) {
       const std::int64_t before = live;
       most = before;
       const auto structure = build(spec, scene);

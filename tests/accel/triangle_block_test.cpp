@@ -26,6 +26,7 @@ namespace raymeter {
 struct TriangleClaim {
   bool candidate, inside, certain, known;
   double height, det, height_error, det_error;
+  float low, high;  // of t
 };
 struct BlockTester {
   const char* isa;
@@ -74,8 +75,9 @@ void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
       const std::uint32_t i = first + lane;
       if (i < rows.count) {
         const PlaneHit plane(filter.ray, scale, rows.triangle(i), rows.edge(i), reach);
+        const auto [low, high] = plane.t();
         claims[i] = {claimed(possible), claimed(test.inside()), claimed(certain), plane.known(), plane.height,
-                     plane.det,         plane.height_error,     plane.det_error};
+                     plane.det,         plane.height_error,     plane.det_error,  low,           high};
       } else {
         EXPECT_FALSE(claimed(possible) || claimed(certain)) << "there is no such triangle";
       }
@@ -245,6 +247,10 @@ class TriangleBlock : public testing::TestWithParam<const BlockTester*> {
         const auto rest = claims(leaf, filter, t);
         for (std::size_t j = 0; j < rest.size(); ++j)
           ASSERT_TRUE(rest[j].candidate || truth[j] > t) << "a nearer hit is rejected";
+      }
+      if (claim.known && t != no_hit) {
+        ASSERT_LE(claim.low, t);
+        ASSERT_GE(claim.high, t);
       }
       if (exactly && claim.known) {
         const auto o = reference::units(ray.origin), d = reference::units(ray.direction),

@@ -16,7 +16,7 @@ INSTANTIATE_TEST_SUITE_P(AllStructures, Watertight,
                                          "tunable-grid:cells=48x32x20", "octree", "octree:traversal=top-down",
                                          "two-level-grid", "two-level-grid:cells=5:threshold=0", "brick-grid",
                                          "brick-grid:cells=3:leaf=4", "grid:leaf=simd",
-                                         "tunable-grid:cells=32:leaf=simd"),
+                                         "tunable-grid:cells=32:leaf=simd", "two-level-grid:leaf=simd"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::erase_if(name,

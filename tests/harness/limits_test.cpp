@@ -28,6 +28,7 @@ const std::vector<std::string> all_specs{"grid",
                                          "brick-grid:cells=1:leaf=1",
                                          "grid:leaf=simd",
                                          "tunable-grid:amount=0.5:leaf=simd",
+                                         "two-level-grid:leaf-density=0.5:leaf=simd",
                                          "counted-bvh",
                                          "brute-force"};
 
