@@ -122,22 +122,16 @@ HWY_NOINLINE bool trace_from_afar(const Tracer& tracer, const FloatGrid& grid, c
   return true;
 }
 
-/// Answers packet_size rays, or fewer. trace_some(packet, taken, queries): traces what rays it wants of those
-/// that are taken, and returns them.
+/// Answers the first of packet_size rays, as many as there are answers. trace_some(packet, taken, queries):
+/// traces what rays it wants of those that are taken, and returns them.
 template <class Queries, class Tracer, class Answer, class Probe, class TraceSome>
 HWY_INLINE void answer_rays(const Tracer& tracer, const FloatGrid& grid, const WalkSpace& space,
-                            const Scene& scene, std::span<const Ray> rays, std::span<Answer> answers,
-                            Probe& probe, const TraceSome& trace_some) {
-  std::array<Ray, packet_size> padded;
-  const Ray* group = rays.data();
-  if (rays.size() < packet_size) {
-    std::ranges::copy(rays, padded.begin());
-    group = padded.data();
-  }
-  const PacketMask all = (PacketMask{1} << rays.size()) - 1;
+                            const Scene& scene, const Ray* rays, std::span<Answer> answers, Probe& probe,
+                            const TraceSome& trace_some) {
+  const PacketMask all = (PacketMask{1} << answers.size()) - 1;
   RayPacket packet;
-  const PacketMask taken = packet.load(group, grid) & all;
-  Queries queries(scene, group, packet, probe);
+  const PacketMask taken = packet.load(rays, grid) & all;
+  Queries queries(scene, rays, packet, probe);
   const PacketMask singly = taken & ~trace_some(packet, taken, queries);
   if constexpr (std::is_same_v<Probe, NoProbe>)
     trace_singly(tracer, packet, singly, queries, probe);
@@ -149,12 +143,12 @@ HWY_INLINE void answer_rays(const Tracer& tracer, const FloatGrid& grid, const W
   PacketMask others = 0;
   for_each_ray(all & ~taken, [&](std::size_t ray) {
     probe.select(ray);
-    if (is_traceable(group[ray]) &&
-        !trace_from_afar(tracer, grid, space, group[ray], packet, ray, queries, probe))
+    if (is_traceable(rays[ray]) &&
+        !trace_from_afar(tracer, grid, space, rays[ray], packet, ray, queries, probe))
       others |= PacketMask{1} << ray;
   });
   queries.finish();
-  for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = queries.answer(i);
+  for (std::size_t i = 0; i < answers.size(); ++i) answers[i] = queries.answer(i);
   for_each_ray(others, [&](std::size_t ray) {
     probe.select(ray);
     if constexpr (std::is_same_v<Answer, Hit>)
@@ -171,11 +165,16 @@ HWY_INLINE void answer_batch(const Tracer& tracer, const FloatGrid& grid, const 
                              [[maybe_unused]] std::span<RayCounters> counters, Probe& probe,
                              const TraceSome& trace_some) {
   const FlushDenormals mode;
+  std::array<Ray, packet_size> last;  // padded
   for (std::size_t i = 0; i < batch.rays.size(); i += packet_size) {
     const std::size_t n = std::min(packet_size, batch.rays.size() - i);
     if constexpr (!std::is_same_v<Probe, NoProbe>) probe.begin_rays(counters.subspan(i, n));
-    answer_rays<Queries>(tracer, grid, space, scene, batch.rays.subspan(i, n), answers.subspan(i, n), probe,
-                         trace_some);
+    const Ray* rays = &batch.rays[i];
+    if (n < packet_size) {
+      std::ranges::copy(batch.rays.subspan(i, n), last.begin());
+      rays = last.data();
+    }
+    answer_rays<Queries>(tracer, grid, space, scene, rays, answers.subspan(i, n), probe, trace_some);
   }
 }
 

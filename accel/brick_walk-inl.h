@@ -25,7 +25,8 @@ namespace raymeter::HWY_NAMESPACE {
 /// * delta, which grows with the index however it is rounded, and at any t the walk is in the layer between
 /// the two planes whose t enclose it. So its place is wrong by no more than what the rounding of a t means in
 /// space: less than 2^-18 of the diagonal, for rays that start within four diagonals. Primitives are
-/// registered in every cell that they come as near to as the margin of Bricks::space, which is more.
+/// registered in every cell that they come as near to as the margin of Bricks::space, which is more, by what
+/// the origin of a RoundedRay is off, too.
 class BrickWalk {
  public:
   /// Of cells where there is nothing.

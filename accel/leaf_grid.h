@@ -38,8 +38,8 @@ struct LeafGrid {
 
   WalkSpace space;
   FloatGrid grid;
-  MeteredVector<std::uint32_t>
-      leaves;  ///< by cell, the sub-grids' after the grid's: its first word, or empty_cell
+  /// By cell, the sub-grids' after the grid's: its first word, or empty_cell.
+  MeteredVector<std::uint32_t> leaves;
   RawMeteredVector<std::uint32_t> words;
   MeteredVector<SubGrid> subgrids;
 };
