@@ -6,7 +6,6 @@
 #include "scenes/base/error.h"
 #include "scenes/open_scene.h"
 #include "tests/accel/grid_tests.h"
-#include "tests/scenes/geometry/adversary.h"
 
 namespace raymeter {
 namespace {
@@ -107,38 +106,10 @@ TEST(BrickGridBuild, SplitsWhatIsCrowdedAndNotWhatIsNot) {
   EXPECT_GT(build("brick-grid:cells=1", many)->stats().inner_nodes, 0u);
 }
 
-/// A few triangles of which a block's test, or a brick's box, may make the wrong thing; each as the scene's
-/// only leaf, and split by force.
+/// A few triangles as the scene's only leaf, and split by force.
 TEST_P(BrickGrid, AnswersLikeBruteForceToAnAdversary) {
-  for (const auto style : adversary::styles) {
-    Random random(9, unsigned(style));
-    for (int round = 0; round < 150; ++round) {
-      SceneData data;
-      data.name = "adversary";
-      std::vector<Triangle> triangles;
-      for (std::uint32_t i = 0; i < 1 + random.below(20); ++i) {
-        Triangle t = adversary::triangle(random, style);
-        for (Vec3* v : {&t.a, &t.b, &t.c})
-          for (int axis = 0; axis < 3; ++axis) (*v)[axis] = std::clamp((*v)[axis], -1e36f, 1e36f);
-        const auto first = static_cast<std::uint32_t>(data.vertices.size());
-        data.vertices.insert(data.vertices.end(), {t.a, t.b, t.c});
-        data.triangles.push_back({first, first + 1, first + 2});
-        triangles.push_back(t);
-      }
-      const Scene scene(std::move(data));
-      std::vector<Ray> rays;
-      for (int i = 0; i < 24; ++i) {
-        const Triangle& target = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
-        Ray ray = adversary::ray_towards(random, style, adversary::point_on(random, target));
-        adversary::tempt_interval(random, ray, decide(ray, target));
-        rays.push_back(ray);
-      }
-      for (const char* arguments : {"cells=1", "cells=1:leaf=1"})
-        ASSERT_NO_FATAL_FAILURE(expect_brute_force(
-            *build(spec(arguments), scene), scene, rays,
-            spec(arguments) + ", style " + std::to_string(int(style)) + ", round " + std::to_string(round)));
-    }
-  }
+  const std::string specs[] = {spec("cells=1"), spec("cells=1:leaf=1")};
+  expect_brute_force_to_an_adversary(specs);
 }
 
 TEST_P(BrickGrid, TakesDirectionsOfEveryLength) {

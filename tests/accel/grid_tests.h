@@ -14,6 +14,7 @@
 #include "scenes/base/float_mode.h"
 #include "scenes/base/random.h"
 #include "scenes/scene.h"
+#include "tests/scenes/geometry/adversary.h"
 
 namespace raymeter {
 
@@ -211,6 +212,39 @@ inline void expect_brute_force(const Structure& structure, const Scene& scene, s
     ASSERT_EQ(hits[i], counted[i]) << what << ", ray " << i;
     ASSERT_EQ(bool(occluded[i]), expected.found()) << what << ", ray " << i;
     ASSERT_EQ(occluded[i], counted_any[i]) << what << ", ray " << i;
+  }
+}
+
+/// A few triangles of which a test of many at once, or a box, may make the wrong thing.
+inline void expect_brute_force_to_an_adversary(std::span<const std::string> specs) {
+  for (const auto style : adversary::styles) {
+    Random random(9, unsigned(style));
+    for (int round = 0; round < 150; ++round) {
+      SceneData data;
+      data.name = "adversary";
+      std::vector<Triangle> triangles;
+      for (std::uint32_t i = 0; i < 1 + random.below(20); ++i) {
+        Triangle t = adversary::triangle(random, style);
+        for (Vec3* v : {&t.a, &t.b, &t.c})
+          for (int axis = 0; axis < 3; ++axis) (*v)[axis] = std::clamp((*v)[axis], -1e36f, 1e36f);
+        const auto first = static_cast<std::uint32_t>(data.vertices.size());
+        data.vertices.insert(data.vertices.end(), {t.a, t.b, t.c});
+        data.triangles.push_back({first, first + 1, first + 2});
+        triangles.push_back(t);
+      }
+      const Scene scene(std::move(data));
+      std::vector<Ray> rays;
+      for (int i = 0; i < 24; ++i) {
+        const Triangle& target = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
+        Ray ray = adversary::ray_towards(random, style, adversary::point_on(random, target));
+        adversary::tempt_interval(random, ray, decide(ray, target));
+        rays.push_back(ray);
+      }
+      for (const std::string& spec : specs)
+        ASSERT_NO_FATAL_FAILURE(expect_brute_force(
+            *build(spec, scene), scene, rays,
+            spec + ", style " + std::to_string(int(style)) + ", round " + std::to_string(round)));
+    }
   }
 }
 

@@ -6,7 +6,6 @@
 #include "scenes/base/error.h"
 #include "scenes/open_scene.h"
 #include "tests/accel/grid_tests.h"
-#include "tests/scenes/geometry/adversary.h"
 
 namespace raymeter {
 namespace {
@@ -55,40 +54,12 @@ TEST_P(SimdLeaves, AnswersLikeBruteForceInLargerScenes) {
   }
 }
 
-/// A few triangles of which a block's test may make the wrong thing. By boxes they are also tested in cells
-/// that they come nowhere near.
+/// By boxes triangles are also tested in cells that they come nowhere near.
 TEST_P(SimdLeaves, AnswersLikeBruteForceToAnAdversary) {
-  for (const auto style : adversary::styles) {
-    Random random(9, unsigned(style));
-    for (int round = 0; round < 150; ++round) {
-      SceneData data;
-      data.name = "adversary";
-      std::vector<Triangle> triangles;
-      for (std::uint32_t i = 0; i < 1 + random.below(20); ++i) {
-        Triangle t = adversary::triangle(random, style);
-        for (Vec3* v : {&t.a, &t.b, &t.c})
-          for (int axis = 0; axis < 3; ++axis) (*v)[axis] = std::clamp((*v)[axis], -1e36f, 1e36f);
-        const auto first = static_cast<std::uint32_t>(data.vertices.size());
-        data.vertices.insert(data.vertices.end(), {t.a, t.b, t.c});
-        data.triangles.push_back({first, first + 1, first + 2});
-        triangles.push_back(t);
-      }
-      const Scene scene(std::move(data));
-      std::vector<Ray> rays;
-      for (int i = 0; i < 24; ++i) {
-        const Triangle& target = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
-        Ray ray = adversary::ray_towards(random, style, adversary::point_on(random, target));
-        adversary::tempt_interval(random, ray, decide(ray, target));
-        rays.push_back(ray);
-      }
-      for (const char* structure :
-           {"tunable-grid:cells=1", "tunable-grid:cells=9:fit=box", "tunable-grid:cells=5",
-            "two-level-grid:cells=2:threshold=0:leaf-density=20"})
-        ASSERT_NO_FATAL_FAILURE(expect_brute_force(
-            *build(spec(structure), scene), scene, rays,
-            spec(structure) + ", style " + std::to_string(int(style)) + ", round " + std::to_string(round)));
-    }
-  }
+  const std::string specs[] = {spec("tunable-grid:cells=1"), spec("tunable-grid:cells=9:fit=box"),
+                               spec("tunable-grid:cells=5"),
+                               spec("two-level-grid:cells=2:threshold=0:leaf-density=20")};
+  expect_brute_force_to_an_adversary(specs);
 }
 
 TEST_P(SimdLeaves, HitEdgesFromAfar) {
