@@ -38,8 +38,7 @@ struct GeneralQuadric {
 };
 
 inline Bounds bounds_of(const Triangle& triangle) {
-  Bounds box;
-  box.extend(triangle.a);
+  Bounds box{triangle.a, triangle.a};
   box.extend(triangle.b);
   box.extend(triangle.c);
   return box;
