@@ -37,9 +37,4 @@ std::uint64_t CellLists::counts_to_beginnings() {
   return total;
 }
 
-void CellLists::ends_to_beginnings() {
-  std::copy_backward(offsets_.begin(), offsets_.end() - 1, offsets_.end());
-  offsets_.front() = 0;
-}
-
 }  // namespace raymeter

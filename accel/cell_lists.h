@@ -16,7 +16,7 @@ class CellLists {
  public:
   explicit CellLists(MemoryMeter& meter)
       : offsets_(MeteredAllocator<std::uint32_t>(meter)),
-        references_(MeteredAllocator<std::uint32_t>(meter)) {}
+        references_(RawMeteredAllocator<std::uint32_t>(meter)) {}
 
   /// Fills the lists of `cells` cells: enumerate(primitive, add) must call add(cell) for each cell that is to
   /// hold the primitive, and is run twice for each of `primitives`, on several threads. Every list holds its
@@ -26,8 +26,8 @@ class CellLists {
   void build(std::uint64_t cells, std::uint64_t primitives, const Enumerate& enumerate) {
     const bool shared = is_parallel();
     const auto next = [this, shared](std::uint64_t cell) {
-      std::uint32_t& offset = offsets_[cell];
-      return shared ? std::atomic_ref(offset).fetch_add(1, std::memory_order_relaxed) : offset++;
+      std::uint32_t& place = next_of(cell);
+      return shared ? std::atomic_ref(place).fetch_add(1, std::memory_order_relaxed) : place++;
     };
     build_in_two_passes(cells, [&](const auto& each) {
       for_ranges(primitives, 1024, [&](std::uint64_t begin, std::uint64_t end) {
@@ -46,7 +46,24 @@ class CellLists {
     build_in_two_passes(cells, [&](const auto& each) {
       for_ranges(groups, 16, [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t group = begin; group < end; ++group)
-          enumerate(group, [&](std::uint64_t cell, std::uint32_t p) { each(offsets_[cell]++, p); });
+          enumerate(group, [&](std::uint64_t cell, std::uint32_t p) { each(next_of(cell)++, p); });
+      });
+    });
+  }
+
+  /// The same by stretches of fewer than 2^32 cells, one for each thread: enumerate(begin, end, add) calls
+  /// add(cell, primitive) for each pair of the cells begin .. end - 1. A list holds its primitives in the
+  /// order of the calls.
+  template <class Enumerate>
+  void build_by_stretches(std::uint64_t cells, const Enumerate& enumerate) {
+    const auto stretches = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+    build_in_two_passes(cells, [&](const auto& each) {
+      for_ranges(stretches, 1, [&](std::uint64_t begin, std::uint64_t end) {
+        std::uint32_t* const next = offsets_.data() + 1;
+        for (std::uint64_t s = begin; s < end; ++s)
+          enumerate(static_cast<std::uint32_t>(cells * s / stretches),
+                    static_cast<std::uint32_t>(cells * (s + 1) / stretches),
+                    [&](std::uint64_t cell, std::uint32_t p) { each(next[cell]++, p); });
       });
     });
   }
@@ -76,7 +93,7 @@ class CellLists {
   std::uint64_t reference_bytes() const { return references_.capacity() * sizeof(std::uint32_t); }
 
  private:
-  /// run(each) must add one to the offset of each pair's cell and call each(its old value, primitive).
+  /// run(each) must add one to next_of(cell) for each pair, and call each(its old value, primitive).
   template <class Run>
   void build_in_two_passes(std::uint64_t cells, const Run& run) {
     // Count what each cell will hold.
@@ -84,16 +101,17 @@ class CellLists {
     run([](std::uint32_t, std::uint32_t) {});
     // Let each list begin where the one before it ends.
     references_.resize(counts_to_beginnings());
-    // Fill; every offset moves from its list's beginning to its end, which is the next one's beginning.
-    run([this](std::uint32_t place, std::uint32_t primitive) { references_[place] = primitive; });
-    ends_to_beginnings();
+    // Fill; every list's next place moves from its beginning to its end, which is the next list's beginning.
+    run([to = references_.data()](std::uint32_t place, std::uint32_t primitive) { to[place] = primitive; });
   }
+  /// While building: how many primitives the cell is known to hold, then where the next of them goes.
+  std::uint32_t& next_of(std::uint64_t cell) { return offsets_[cell + 1]; }
 
   void sort_lists();
   std::uint64_t counts_to_beginnings();
-  void ends_to_beginnings();
 
-  MeteredVector<std::uint32_t> offsets_, references_;
+  MeteredVector<std::uint32_t> offsets_;
+  RawMeteredVector<std::uint32_t> references_;
 };
 
 }  // namespace raymeter

@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "accel/note.h"
 #include "accel/parallel.h"
+#include "accel/sparse_lists.h"
 
 namespace raymeter {
 
@@ -54,11 +56,31 @@ bool SphereOverlap::meets(const Vec3d& centre) const {
   return nearest <= radius_ * radius_ && radius_ * radius_ <= farthest;
 }
 
+namespace {
+
+/// The grid of the chosen resolution, made coarser until is_registrable(grid).
+template <class IsRegistrable>
+CellGrid coarsened(const WalkSpace& space, std::uint64_t limit, ChosenResolution& chosen,
+                   const IsRegistrable& is_registrable) {
+  const Resolution asked = chosen.n;
+  CellGrid grid(space.low, space.high, chosen.n);
+  while (!is_registrable(grid)) {
+    for (auto& n : chosen.n) n = std::max(1u, n * 4 / 5);
+    grid = CellGrid(space.low, space.high, chosen.n);
+  }
+  if (chosen.n != asked) {
+    add_note(chosen.note, fmt::format("clamped from {} to {} (limit {} cells in all primitives' boxes)",
+                                      fmt::join(asked, "x"), fmt::join(chosen.n, "x"), limit));
+    chosen.clamped = true;
+  }
+  return grid;
+}
+
+}  // namespace
+
 CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, std::uint64_t limit,
                           ChosenResolution& chosen) {
-  const Resolution asked = chosen.n;
-  while (true) {
-    const CellGrid grid(space.low, space.high, chosen.n);
+  return coarsened(space, limit, chosen, [&](const CellGrid& grid) {
     const auto work = sum_of_ranges<std::uint64_t>(
         scene.primitive_count(), 4096, [&](std::uint64_t begin, std::uint64_t end) {
           std::uint64_t part = 0;
@@ -66,16 +88,28 @@ CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, std::uint6
             part += cells_of_box(grid, scene.bounds_of(static_cast<std::uint32_t>(p)), space.margin).cells();
           return part;
         });
-    if (work <= limit) {
-      if (chosen.n != asked) {
-        add_note(chosen.note, fmt::format("clamped from {} to {} (limit {} cells in all primitives' boxes)",
-                                          fmt::join(asked, "x"), fmt::join(chosen.n, "x"), limit));
-        chosen.clamped = true;
-      }
-      return grid;
-    }
-    for (auto& n : chosen.n) n = std::max(1u, n * 4 / 5);
-  }
+    return work <= limit;
+  });
+}
+
+CellGrid register_primitives(const Scene& scene, const WalkSpace& space, std::uint64_t limit, Fit fit,
+                             ChosenResolution& chosen, SparseLists& lists) {
+  return coarsened(space, limit, chosen, [&](const CellGrid& grid) {
+    std::atomic<std::uint64_t> work = 0;
+    return lists.build(cell_count(grid.n), scene.primitive_count(),
+                       [&](std::uint32_t begin, std::uint32_t end, const auto& add) {
+                         std::uint64_t part = 0;
+                         for (std::uint32_t p = begin; p < end; ++p) {
+                           const CellRange range = cells_of_box(grid, scene.bounds_of(p), space.margin);
+                           part += range.cells();
+                           if (part > limit) return false;
+                           for_each_run_of(
+                               scene, p, grid, space.margin, range, fit,
+                               [&](std::uint64_t first, std::uint64_t count) { add(p, first, count); });
+                         }
+                         return (work += part) <= limit;
+                       });
+  });
 }
 
 }  // namespace raymeter

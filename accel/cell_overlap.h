@@ -16,6 +16,8 @@
 
 namespace raymeter {
 
+class SparseLists;
+
 /// The space to subdivide; of an empty scene, a point.
 inline WalkSpace walk_space_of(const Scene& scene) {
   return WalkSpace(scene.bounds().empty() ? Bounds{{0, 0, 0}, {0, 0, 0}} : scene.bounds());
@@ -134,30 +136,57 @@ inline std::uint64_t registration_limit(std::uint64_t primitives) {
 /// the scene's primitives would exceed the limit (many primitives, each as large as the scene).
 CellGrid registrable_grid(const Scene& scene, const WalkSpace& space, std::uint64_t limit,
                           ChosenResolution& chosen);
+/// The same grid, and in `lists` the primitives that are registered in each of its cells.
+CellGrid register_primitives(const Scene& scene, const WalkSpace& space, std::uint64_t limit, Fit fit,
+                             ChosenResolution& chosen, SparseLists& lists);
 
-/// Calls visit(cell) for each cell of the range whose centre satisfies `meets`.
+/// Calls visit(first, count) for the runs of cells side by side, within the range, whose centres satisfy
+/// `meets`.
 template <class Meets, class Visit>
-void for_each_cell(const CellGrid& grid, const CellRange& range, const Meets& meets, const Visit& visit) {
+void for_each_run(const CellGrid& grid, const CellRange& range, const Meets& meets, const Visit& visit) {
   for (std::uint32_t k = range.first[2]; k <= range.last[2]; ++k)
-    for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j)
-      for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
-        if (meets(Vec3d{grid.plane(0, i + 0.5), grid.plane(1, j + 0.5), grid.plane(2, k + 0.5)}))
-          visit(grid.cell(i, j, k));
+    for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j) {
+      std::uint32_t begin = range.first[0];
+      const auto end_run = [&](std::uint32_t i) {
+        if (i > begin) visit(grid.cell(begin, j, k), i - begin);
+        begin = i + 1;
+      };
+      for (std::uint32_t i = begin; i <= range.last[0]; ++i)
+        if (!meets(Vec3d{grid.plane(0, i + 0.5), grid.plane(1, j + 0.5), grid.plane(2, k + 0.5)})) end_run(i);
+      end_run(range.last[0] + 1);
+    }
 }
 
-/// Calls visit(cell) once for each cell in which `primitive` is to be registered. Triangles without area,
-/// which are never hit, are registered like any other: counts of references are those of the rule.
+/// Calls visit(first, count) for runs of cells side by side, which together are those in which `primitive` is
+/// to be registered, each once. `range` is that of its box. Triangles without area, which are never hit, are
+/// registered like any other: counts of references are those of the rule.
 template <class Visit>
-void for_each_cell_of(const Scene& scene, std::uint32_t primitive, const CellGrid& grid, double margin,
-                      Fit fit, const Visit& visit) {
-  const CellRange range = cells_of_box(grid, scene.bounds_of(primitive), margin);
-  if (fit == Fit::box || range.first == range.last)
-    return for_each_cell(grid, range, [](const Vec3d&) { return true; }, visit);
+void for_each_run_of(const Scene& scene, std::uint32_t primitive, const CellGrid& grid, double margin,
+                     const CellRange& range, Fit fit, const Visit& visit) {
+  if (fit == Fit::box || range.first == range.last) {
+    const std::uint32_t nx = range.last[0] - range.first[0] + 1, ny = range.last[1] - range.first[1] + 1,
+                        nz = range.last[2] - range.first[2] + 1;
+    const std::uint64_t row = grid.n[0], layer = row * grid.n[1];
+    std::uint64_t begin = grid.cell(range.first[0], range.first[1], range.first[2]);
+    for (std::uint32_t k = 0; k < nz; ++k, begin += layer)
+      for (std::uint64_t j = 0; j < ny; ++j) visit(begin + j * row, nx);
+    return;
+  }
   // Twice the margin: once for the walk, once for the rounding of the overlap tests.
   const Vec3d half = 0.5 * grid.size;
   const double slack = 2 * margin;
   with_overlap(scene, primitive, half, slack, [&](const auto& overlap) {
-    for_each_cell(grid, range, [&](const Vec3d& centre) { return overlap.meets(centre); }, visit);
+    for_each_run(grid, range, [&](const Vec3d& centre) { return overlap.meets(centre); }, visit);
+  });
+}
+
+/// Calls visit(cell) once for each of those cells.
+template <class Visit>
+void for_each_cell_of(const Scene& scene, std::uint32_t primitive, const CellGrid& grid, double margin,
+                      Fit fit, const Visit& visit) {
+  const CellRange range = cells_of_box(grid, scene.bounds_of(primitive), margin);
+  for_each_run_of(scene, primitive, grid, margin, range, fit, [&](std::uint64_t first, std::uint64_t count) {
+    for (std::uint64_t cell = first; cell < first + count; ++cell) visit(cell);
   });
 }
 

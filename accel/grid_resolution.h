@@ -50,7 +50,7 @@ ResolutionRule resolution_rule(const Arguments& arguments, const ResolutionRule&
 /// What no rule may exceed.
 struct ResolutionLimits {
   std::uint64_t per_axis = 4096;
-  std::uint64_t cells = std::uint64_t{1} << 26;  ///< 256 MB of offsets
+  std::uint64_t cells = std::uint64_t{1} << 26;  ///< 256 MB of offsets where none is empty
   double thinnest = 0;                           ///< least size of a cell along an axis (unit of the scene)
 
   /// The default, but with no more cells than can be numbered in half of the memory.

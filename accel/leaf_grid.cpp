@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "accel/cell_lists.h"
 #include "accel/isa.h"
 #include "accel/parallel.h"
+#include "accel/sparse_lists.h"
 #include "accel/two_level_cells.h"
 #include "scenes/base/error.h"
 
@@ -63,15 +63,10 @@ class LeafGridStructure final : public Structure {
   LeafGridStructure(const BuildInput& input, const std::string& name, const ResolutionRule& rule, Fit fit,
                     const LeafGridKernels& kernels)
       : LeafGridStructure(input, name, kernels) {
-    const double margin = grid_.space.margin;
     auto chosen = choose_resolution(rule, shape_sizes(scene_), limits());
-    const CellGrid cells = registrable_grid(scene_, grid_.space, most_work(), chosen);
-    grid_.grid = FloatGrid(cells);
     {
-      CellLists lists(meter_);
-      lists.build(cell_count(chosen.n), scene_.primitive_count(), [&](std::uint32_t p, const auto& add) {
-        for_each_cell_of(scene_, p, cells, margin, fit, add);
-      });
+      SparseLists lists(meter_);
+      grid_.grid = FloatGrid(register_primitives(scene_, grid_.space, most_work(), fit, chosen, lists));
       write_leaves(
           scene_, lists.cells(), [&](std::uint64_t c) { return lists[c]; },
           [](std::uint64_t) { return TwoLevelCells::no_subgrid; }, grid_);

@@ -1,12 +1,12 @@
 #include "accel/uniform_grid.h"
 
-#include "accel/cell_lists.h"
 #include "accel/cell_overlap.h"
 #include "accel/cell_query.h"
 #include "accel/grid_resolution.h"
 #include "accel/grid_walk.h"
 #include "accel/leaf_grid.h"
 #include "accel/per_ray_structure.h"
+#include "accel/sparse_lists.h"
 #include "scenes/base/error.h"
 
 namespace raymeter {
@@ -26,10 +26,8 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
     space_ = walk_space_of(scene);
     const auto limits = ResolutionLimits::within(input.memory_limit, 4 * space_.margin);
     auto chosen = choose_resolution(options.rule, shape_sizes(scene), limits);
-    grid_ = registrable_grid(scene, space_, registration_limit(scene.primitive_count()), chosen);
-    lists_.build(cell_count(chosen.n), scene.primitive_count(), [&](std::uint32_t p, const auto& add) {
-      for_each_cell_of(scene, p, grid_, space_.margin, options.fit, add);
-    });
+    grid_ = register_primitives(scene, space_, registration_limit(scene.primitive_count()), options.fit,
+                                chosen, lists_);
 
     stats_.resolution = chosen.n;
     stats_.cells = lists_.cells();
@@ -37,7 +35,7 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
     stats_.references = lists_.references();
     stats_.bytes = meter_.bytes();
     stats_.peak_bytes = meter_.peak();
-    stats_.bytes_by_part = {{"cells", lists_.offset_bytes()}, {"references", lists_.reference_bytes()}};
+    stats_.bytes_by_part = {{"cells", lists_.cell_bytes()}, {"references", lists_.reference_bytes()}};
     stats_.note = chosen.note;
   }
 
@@ -68,7 +66,7 @@ class UniformGrid final : public PerRayStructure<UniformGrid> {
 
   Options options_;
   MemoryMeter meter_;
-  CellLists lists_;
+  SparseLists lists_;
   WalkSpace space_;
   CellGrid grid_;
   StructureStats stats_;

@@ -57,8 +57,9 @@ TEST(UniformGrid, CountsByHand) {
   EXPECT_EQ(grid->stats().cells, 4u);
   EXPECT_EQ(grid->stats().empty_cells, 2u);
   EXPECT_EQ(grid->stats().references, 2u);
-  EXPECT_EQ(grid->stats().bytes, 4u * (5 + 2));  // five offsets, two references
-  EXPECT_EQ(grid->stats().peak_bytes, 4u * (5 + 2));
+  // A word of cells and what lies before it, three offsets, two references; and two runs while building.
+  EXPECT_EQ(grid->stats().bytes, 8u + 4u + 4u * (3 + 2));
+  EXPECT_EQ(grid->stats().peak_bytes, grid->stats().bytes + 8u * 2);
 
   // Passes the first wall (tested), two empty cells, and hits the second.
   RayCounters c = count(*grid, {{-1, 0.7f, 0.8f}, 0, {1, 0, 0}});
