@@ -41,6 +41,12 @@ void* allocate_lines(std::size_t bytes);
 /// Of that; null is nothing.
 void free_lines(void* memory) noexcept;
 
+/// Address space, of which a page takes memory once it is written: huge pages, as above. Null where the
+/// system refuses.
+void* map_pages(std::size_t bytes);
+/// Gives back what lies beyond the first `kept` bytes of it, but for the rest of a page.
+void unmap_pages(void* memory, std::size_t kept, std::size_t bytes) noexcept;
+
 /// Lets a standard container charge its memory to a meter, which must outlive it.
 template <class T>
 class MeteredAllocator {
