@@ -8,11 +8,13 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
 #include "accel/cell_lists.h"
 #include "accel/cell_overlap.h"
+#include "accel/local_primitives.h"
 #include "accel/parallel.h"
 #include "scenes/base/error.h"
 #include "scenes/geometry/rounding.h"
@@ -44,6 +46,9 @@ double cost_of_leaves(std::size_t leaves, std::size_t blocks, double chance) {
 /// A node of more primitives is made by all threads together; what is smaller goes to a thread in parts of
 /// about so many primitives.
 constexpr std::size_t large_node = 16384, part_size = 4096;
+/// A scene's triangles and vertices of more bytes are far, where one has to wait for them: on a mesh of so
+/// many, fetching each only once begins to pay.
+constexpr std::size_t far_bytes = 4 << 20;
 
 using Corner = std::array<double, 3>;
 struct Box {
@@ -75,56 +80,6 @@ struct Task {
 /// Where something begins among nodes and words.
 struct Place {
   std::uint64_t node = 0, word = 0;
-};
-
-/// Triangles of the scene, gathered in columns, so many at a time as the buffer takes.
-class GatheredTriangles {
- public:
-  static constexpr std::size_t capacity = 256;
-  struct Buffer {
-    alignas(64) std::array<float, 9 * capacity> rows{};
-  };
-
-  GatheredTriangles(const Scene& scene, std::span<const std::uint32_t> triangles, Buffer& buffer)
-      : scene_(scene), triangles_(triangles), buffer_(buffer) {
-    if (triangles_.size() <= capacity) columns_ = gather(triangles_);
-  }
-
-  std::span<const std::uint32_t> all() const { return triangles_; }
-
-  /// Calls use(columns, place of the first among the triangles) until all have been used.
-  template <class Use>
-  void for_each(const Use& use) const {
-    if (triangles_.size() <= capacity) {
-      if (!triangles_.empty()) use(columns_, 0);
-      return;
-    }
-    for (std::size_t first = 0; first < triangles_.size(); first += capacity)
-      use(gather(triangles_.subspan(first, std::min(capacity, triangles_.size() - first))), first);
-  }
-
- private:
-  TriangleColumns gather(std::span<const std::uint32_t> triangles) const {
-    const std::size_t stride = (triangles.size() + widest_vector - 1) / widest_vector * widest_vector;
-    const auto corners = scene_.triangles();
-    const auto vertices = scene_.vertices();
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      float* column = buffer_.rows.data() + i;
-      for (const std::uint32_t corner : corners[triangles[i]]) {
-        const Vec3& v = vertices[corner];
-        for (const float x : {v.x, v.y, v.z}) {
-          *column = x;
-          column += stride;
-        }
-      }
-    }
-    return {buffer_.rows.data(), stride, triangles.size()};
-  }
-
-  const Scene& scene_;
-  std::span<const std::uint32_t> triangles_;
-  Buffer& buffer_;
-  TriangleColumns columns_;
 };
 
 /// What nodes are made of, and how; safe to share between threads.
@@ -189,13 +144,15 @@ class NodeRules {
   }
 
   /// Triangles come before all others.
-  std::size_t triangles_among(std::span<const std::uint32_t> primitives) const {
-    if (primitives.empty() || scene_.is_triangle(primitives.back())) return primitives.size();
-    const auto end = std::ranges::partition_point(primitives, [&](auto p) { return scene_.is_triangle(p); });
-    return static_cast<std::size_t>(end - primitives.begin());
+  template <class Primitives>
+  std::size_t triangles_among(const Primitives& all, std::span<const std::uint32_t> some) const {
+    const auto is_triangle = [&](std::uint32_t p) { return scene_.is_triangle(all.primitive(p)); };
+    if (some.empty() || is_triangle(some.back())) return some.size();
+    return static_cast<std::size_t>(std::ranges::partition_point(some, is_triangle) - some.begin());
   }
 
-  Bounds bounds_of(const GatheredTriangles& triangles, std::span<const std::uint32_t> others) const {
+  template <class Triangles, class Others>
+  Bounds bounds_of(const Triangles& triangles, const Others& others) const {
     Bounds bounds;
     triangles.for_each([&](const TriangleColumns& columns, std::size_t) {
       bounds.extend(options_.overlap->bounds_of(columns));
@@ -221,8 +178,9 @@ class NodeRules {
   }
 
   /// Which cells each primitive meets.
-  void cells_of(const CutBrick& brick, const GatheredTriangles& triangles,
-                std::span<const std::uint32_t> others, std::span<std::uint64_t> cells) const {
+  template <class Triangles, class Others>
+  void cells_of(const CutBrick& brick, const Triangles& triangles, const Others& others,
+                std::span<std::uint64_t> cells) const {
     triangles.for_each([&](const TriangleColumns& columns, std::size_t first) {
       options_.overlap->cells_of(brick, columns, &cells[first]);
     });
@@ -320,23 +278,32 @@ void distribute(std::span<const std::uint32_t> primitives, std::span<const std::
       lists[places[static_cast<unsigned>(std::countr_zero(rest))]++] = primitives[i];
 }
 
+/// Nodes and words that 32 bits can number.
+constexpr std::uint64_t most_numbered = std::numeric_limits<std::uint32_t>::max();
+[[noreturn]] void refuse() {
+  throw Error("brick-grid: more than 16 GiB of leaves");
+}
+
 /// Nodes and leaves, with places of their own. Of leaves first only what is in them: their words are written
-/// when it is known how many there are in all.
+/// when it is known how many there are before them.
+template <class Primitives>
 struct Part {
   struct Leaf {
     std::uint32_t triangles, others;
   };
 
-  explicit Part(MemoryMeter& meter)
-      : nodes(MeteredAllocator<BrickNode>(meter)),
+  Part(const Primitives& none, MemoryMeter& meter)
+      : all(none),
+        nodes(MeteredAllocator<BrickNode>(meter)),
         leaves(MeteredAllocator<Leaf>(meter)),
         masks(MeteredAllocator<std::uint64_t>(meter)),
         primitives(MeteredAllocator<std::uint32_t>(meter)) {}
 
+  Primitives all;
   MeteredVector<BrickNode> nodes;
   MeteredVector<Leaf> leaves;
   MeteredVector<std::uint64_t> masks;       // of leaf after leaf, as LeafWords has them
-  MeteredVector<std::uint32_t> primitives;  // of leaf after leaf
+  MeteredVector<std::uint32_t> primitives;  // of leaf after leaf, as `all` numbers them
   std::uint64_t words = 0;
   std::uint32_t depth = 0;
 
@@ -358,16 +325,14 @@ struct Part {
         masks.push_back(mask);
       }
     words += LeafWords::count(leaf.triangles) + others.size();
-    if (words > std::numeric_limits<std::uint32_t>::max()) refuse();
+    if (words > most_numbered) refuse();
   }
 
   /// Where the words of another part may begin.
   std::uint64_t end_of_words() const { return LeafWords::begin(words, LeafWords::block); }
 
-  [[noreturn]] static void refuse() { throw Error("brick-grid: more than 16 GiB of leaves"); }
-
   /// Writes the words of all leaves, at their place.
-  void write_leaves(const Scene& scene, std::uint32_t* first) const {
+  void write_leaves(std::uint32_t* first) const {
     std::uint32_t* to = first;
     const std::uint32_t* next = primitives.data();
     const std::uint64_t* mask = masks.data();
@@ -376,14 +341,14 @@ struct Part {
           first + LeafWords::begin(static_cast<std::uint64_t>(to - first), leaf.triangles);
       to = std::fill_n(to, begin - to, 0u);
       for (std::uint32_t i = 0; i < leaf.triangles; ++i)
-        LeafWords::put(to, leaf.triangles, i, scene.triangle(next[i]), next[i]);
+        LeafWords::put(to, leaf.triangles, i, all.triangle(next[i]), all.primitive(next[i]));
       next += leaf.triangles;
       to += TriangleRows::rows * leaf.triangles;
       for (std::size_t i = 0; i < LeafWords::masks(leaf.triangles); ++i, ++mask) {
         *to++ = static_cast<std::uint32_t>(*mask);
         *to++ = static_cast<std::uint32_t>(*mask >> 32u);
       }
-      to = std::copy_n(next, leaf.others, to);
+      to = std::transform(next, next + leaf.others, to, [&](std::uint32_t p) { return all.primitive(p); });
       next += leaf.others;
     }
     std::fill(to, first + end_of_words(), 0u);
@@ -430,6 +395,7 @@ class LeafOrder {
 };
 
 /// Makes nodes and all that is below them, on one thread.
+template <class Primitives>
 class TreeBuilder {
  public:
   TreeBuilder(const NodeRules& rules, MemoryMeter& meter)
@@ -439,16 +405,16 @@ class TreeBuilder {
         cells_(MeteredAllocator<std::uint64_t>(meter)) {}
 
   /// Adds what is below the task's node to `part`.
-  void make(Task& task, Part& part) {
+  void make(Task& task, Part<Primitives>& part) {
     const std::size_t count = task.primitives.size();
-    stack_.assign(task.primitives.begin(), task.primitives.end());
+    part.all.add(task.primitives, stack_);
     if (!task.block) {
       task.made = node_of(0, count, task.cell, task.level, task.duplication, part);
       return;
     }
     CutBrick brick = rules_.block(*task.block);
     CellCounts counts{};
-    find_cells(brick, gathered(0, count), others(0, count));
+    find_cells(brick, gathered(0, count, part), others(0, count, part));
     rules_.count(std::span(cells_).first(count), counts);
     add_children(brick.node, 0, count, counts, part, [&](std::size_t first, unsigned bit) {
       return node_of(first, counts[bit], rules_.root_box(*task.block, bit), 0, 1, part);
@@ -461,22 +427,24 @@ class TreeBuilder {
   std::span<const std::uint32_t> primitives(std::size_t first, std::size_t count) const {
     return std::span(stack_).subspan(first, count);
   }
-  GatheredTriangles gathered(std::size_t first, std::size_t count) {
-    const auto all = primitives(first, count);
-    return {rules_.scene(), all.first(rules_.triangles_among(all)), buffer_};
+  GatheredTriangles<Primitives> gathered(std::size_t first, std::size_t count, const Part<Primitives>& part) {
+    const auto some = primitives(first, count);
+    return {part.all, some.first(rules_.triangles_among(part.all, some)), buffer_};
   }
-  std::span<const std::uint32_t> others(std::size_t first, std::size_t count) const {
-    const auto all = primitives(first, count);
-    return all.subspan(rules_.triangles_among(all));
+  /// As the scene numbers them.
+  auto others(std::size_t first, std::size_t count, const Part<Primitives>& part) const {
+    const auto some = primitives(first, count);
+    return some.subspan(rules_.triangles_among(part.all, some)) |
+           std::views::transform([&all = part.all](std::uint32_t p) { return all.primitive(p); });
   }
 
   /// A node and what is below it.
   BrickNode node_of(std::size_t first, std::size_t count, const Box& cell, std::uint32_t level,
-                    double duplication, Part& part) {
+                    double duplication, Part<Primitives>& part) {
     part.depth = std::max(part.depth, level);
-    const GatheredTriangles triangles = gathered(first, count);
-    CutBrick brick = rules_.cut(rules_.bounds_of(triangles, others(first, count)), cell);
-    find_cells(brick, triangles, others(first, count));
+    const auto triangles = gathered(first, count, part);
+    CutBrick brick = rules_.cut(rules_.bounds_of(triangles, others(first, count, part)), cell);
+    find_cells(brick, triangles, others(first, count, part));
 
     if (rules_.may_split(brick, count, level)) {
       CellCounts counts{};
@@ -492,13 +460,13 @@ class TreeBuilder {
     const std::size_t among = triangles.all().size();
     order_.sort(std::span(stack_).subspan(first, among), std::span(cells_).first(among));
     part.make_leaf(brick.node, primitives(first, among), std::span(cells_).first(among),
-                   others(first, count));
+                   primitives(first, count).subspan(among));
     return brick.node;
   }
 
   /// Of each primitive the cells that it meets, and all of them in the node's mask.
-  void find_cells(CutBrick& brick, const GatheredTriangles& triangles,
-                  std::span<const std::uint32_t> others) {
+  template <class Others>
+  void find_cells(CutBrick& brick, const GatheredTriangles<Primitives>& triangles, const Others& others) {
     const std::size_t count = triangles.all().size() + others.size();
     if (cells_.size() < count) cells_.resize(count);
     const auto cells = std::span(cells_).first(count);
@@ -510,7 +478,7 @@ class TreeBuilder {
   /// list begins, cell).
   template <class Child>
   void add_children(BrickNode& node, std::size_t first, std::size_t count, const CellCounts& counts,
-                    Part& part, const Child& child) {
+                    Part<Primitives>& part, const Child& child) {
     const std::size_t lists = stack_.size(), base = part.nodes.size();
     stack_.resize(lists + sum_of(counts));
     CellCounts places;
@@ -529,7 +497,7 @@ class TreeBuilder {
   }
 
   const NodeRules& rules_;
-  GatheredTriangles::Buffer buffer_;
+  GatherBuffer buffer_;
   LeafOrder order_;
   MeteredVector<std::uint32_t> stack_;
   MeteredVector<std::uint64_t> cells_;  // by primitive, of the node that is being made
@@ -538,7 +506,8 @@ class TreeBuilder {
 /// Nodes that are too much for one thread.
 class LargeNodes {
  public:
-  LargeNodes(const NodeRules& rules, MemoryMeter& meter) : part(meter), rules_(rules), meter_(meter) {}
+  LargeNodes(const NodeRules& rules, MemoryMeter& meter)
+      : part(ScenePrimitives(rules.scene()), meter), rules_(rules), meter_(meter) {}
 
   /// Makes the task's node, on all threads, and adds tasks for its children, whose nodes have their places in
   /// `part`.
@@ -551,12 +520,11 @@ class LargeNodes {
     // Calls use(chunk, its triangles, its others) for each chunk of the primitives.
     const auto for_chunks = [&](const auto& use) {
       for_ranges(chunks, 1, [&](std::uint64_t begin, std::uint64_t end) {
-        GatheredTriangles::Buffer buffer;
+        GatherBuffer buffer;
         for (std::uint64_t chunk = begin; chunk < end; ++chunk) {
           const auto these = part_of(primitives, chunk);
-          const std::size_t triangles = rules_.triangles_among(these);
-          use(chunk, GatheredTriangles(rules_.scene(), these.first(triangles), buffer),
-              these.subspan(triangles));
+          const std::size_t triangles = rules_.triangles_among(part.all, these);
+          use(chunk, GatheredTriangles(part.all, these.first(triangles), buffer), these.subspan(triangles));
         }
       });
     };
@@ -587,7 +555,7 @@ class LargeNodes {
     for (std::size_t i = 0; i < 64; ++i) brick.node.occupied |= std::uint64_t{counts[i] != 0} << i;
     if (!task.block && !(rules_.may_split(brick, count, task.level) &&
                          rules_.splits(brick, counts, count, task.duplication))) {
-      const std::size_t triangles = rules_.triangles_among(primitives);
+      const std::size_t triangles = rules_.triangles_among(part.all, primitives);
       std::vector<std::uint32_t> ordered(primitives.begin(), primitives.end());
       LeafOrder(meter_).sort(std::span(ordered).first(triangles), cells.first(triangles));
       part.make_leaf(brick.node, std::span(ordered).first(triangles), cells.first(triangles),
@@ -627,15 +595,90 @@ class LargeNodes {
     part.nodes.resize(part.nodes.size() + static_cast<std::size_t>(std::popcount(brick.node.occupied)));
   }
 
-  Part part;
+  Part<ScenePrimitives> part;
 
  private:
-  static constexpr std::size_t chunk_size = GatheredTriangles::capacity;
+  static constexpr std::size_t chunk_size = GatherBuffer::capacity;
 
   const NodeRules& rules_;
   MemoryMeter& meter_;
   std::vector<MeteredVector<std::uint32_t>> lists_;  // that the children's primitives lie in
 };
+
+/// For all nodes and words that come before the end.
+void make_room(const Place& end, Bricks& bricks) {
+  if (std::max(end.node, end.word + widest_vector) >= most_numbered) refuse();
+  bricks.nodes.grow(end.node);
+  bricks.words.grow(end.word + widest_vector);
+}
+
+/// Makes the nodes of all tasks but the large ones and what is below them, and writes their leaves, from
+/// `end` on, which moves. Where the bricks `can_grow` where they are, each part's leaves are written while
+/// what they are made of is at hand, and take its place in memory.
+template <class Primitives>
+void make_parts(const NodeRules& rules, std::span<Task> tasks, const Primitives& none, bool can_grow,
+                MemoryMeter& meter, Place& end, Bricks& bricks) {
+  // Of about as many references each, whatever the number of threads.
+  std::vector<std::size_t> begins{0};
+  std::size_t references = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (!tasks[i].is_large()) references += tasks[i].primitives.size();
+    if (references >= part_size || i + 1 == tasks.size()) {
+      begins.push_back(i + 1);
+      references = 0;
+    }
+  }
+  const auto for_small_tasks = [&](std::size_t part, const auto& use) {
+    for (std::size_t i = begins[part]; i < begins[part + 1]; ++i)
+      if (!tasks[i].is_large()) use(tasks[i]);
+  };
+  std::vector<Part<Primitives>> parts(begins.size() - 1, Part<Primitives>(none, meter));
+  std::vector<Place> places(parts.size());
+
+  const auto make = [&](TreeBuilder<Primitives>& builder, std::uint64_t p) {
+    for_small_tasks(p, [&](Task& task) { builder.make(task, parts[p]); });
+  };
+  const auto place = [&](std::uint64_t p) {
+    places[p] = end;
+    end.node += parts[p].nodes.size();
+    end.word += parts[p].end_of_words();
+    bricks.depth = std::max(bricks.depth, parts[p].depth);
+  };
+  const auto write = [&](std::uint64_t p) {
+    const Part<Primitives> part = std::move(parts[p]);
+    const auto move = [&](BrickNode& node) {
+      node.base += static_cast<std::uint32_t>(node.is_leaf() ? places[p].word : places[p].node);
+    };
+    for_small_tasks(p, [&](Task& task) { move(task.made); });
+    BrickNode* to = bricks.nodes.data() + places[p].node;
+    for (const BrickNode& node : part.nodes) move(*to++ = node);
+    part.write_leaves(bricks.words.data() + places[p].word);
+  };
+
+  if (can_grow) {
+    for_each_in_order(
+        parts.size(),
+        [&](std::uint64_t p) {
+          TreeBuilder<Primitives> builder(rules, meter);
+          make(builder, p);
+        },
+        [&](std::uint64_t p) {
+          place(p);
+          make_room(end, bricks);
+        },
+        write);
+    return;
+  }
+  for_ranges(parts.size(), 1, [&](std::uint64_t first, std::uint64_t last) {
+    TreeBuilder<Primitives> builder(rules, meter);
+    for (std::uint64_t p = first; p < last; ++p) make(builder, p);
+  });
+  for (std::uint64_t p = 0; p < parts.size(); ++p) place(p);
+  make_room(end, bricks);
+  for_ranges(parts.size(), 1, [&](std::uint64_t first, std::uint64_t last) {
+    for (std::uint64_t p = first; p < last; ++p) write(p);
+  });
+}
 
 }  // namespace
 
@@ -666,53 +709,19 @@ void build_bricks(const Scene& scene, const BrickOptions& options, MemoryMeter& 
   for (std::size_t i = 0; i < tasks.size(); ++i)
     if (tasks[i].is_large()) large.make(tasks[i], tasks);
 
-  // The others in parts of about as many references each, whatever the number of threads.
-  std::vector<std::size_t> begins{0};
-  std::size_t references = 0;
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (!tasks[i].is_large()) references += tasks[i].primitives.size();
-    if (references >= part_size || i + 1 == tasks.size()) {
-      begins.push_back(i + 1);
-      references = 0;
-    }
-  }
-  std::vector<Part> parts(begins.size() - 1, Part(meter));
-  const auto for_small_tasks = [&](std::size_t part, const auto& use) {
-    for (std::size_t i = begins[part]; i < begins[part + 1]; ++i)
-      if (!tasks[i].is_large()) use(tasks[i]);
-  };
-  for_ranges(parts.size(), 1, [&](std::uint64_t begin, std::uint64_t end) {
-    TreeBuilder builder(rules, meter);
-    for (std::uint64_t p = begin; p < end; ++p)
-      for_small_tasks(p, [&](Task& task) { builder.make(task, parts[p]); });
-  });
-
   // All together, the large nodes first.
-  std::vector<Place> places{{large.part.nodes.size(), large.part.end_of_words()}};
+  Place end{large.part.nodes.size(), large.part.end_of_words()};
   bricks.depth = large.part.depth;
-  for (const Part& part : parts) {
-    places.push_back({places.back().node + part.nodes.size(), places.back().word + part.end_of_words()});
-    bricks.depth = std::max(bricks.depth, part.depth);
-  }
-  const Place end = places.back();
-  if (std::max(end.node, end.word + widest_vector) >= std::numeric_limits<std::uint32_t>::max())
-    Part::refuse();
-  bricks.nodes.resize(end.node);
-  bricks.words.resize(end.word + widest_vector);
-  std::fill_n(bricks.words.end() - widest_vector, widest_vector, 0u);
-  large.part.write_leaves(scene, bricks.words.data());
-  for_ranges(parts.size(), 1, [&](std::uint64_t begin, std::uint64_t last) {
-    for (std::uint64_t p = begin; p < last; ++p) {
-      const Part part = std::move(parts[p]);
-      const auto move = [&](BrickNode& node) {
-        node.base += static_cast<std::uint32_t>(node.is_leaf() ? places[p].word : places[p].node);
-      };
-      for_small_tasks(p, [&](Task& task) { move(task.made); });
-      BrickNode* to = bricks.nodes.data() + places[p].node;
-      for (const BrickNode& node : part.nodes) move(*to++ = node);
-      part.write_leaves(scene, bricks.words.data() + places[p].word);
-    }
-  });
+  const bool is_far = scene.vertices().size_bytes() + scene.triangles().size_bytes() >= far_bytes;
+  if (is_far && bricks.nodes.set_aside(most_numbered) && bricks.words.set_aside(most_numbered))
+    make_parts(rules, std::span(tasks), LocalPrimitives(scene, meter), true, meter, end, bricks);
+  else
+    make_parts(rules, std::span(tasks), ScenePrimitives(scene), false, meter, end, bricks);
+  make_room(end, bricks);
+  bricks.nodes.give_back();
+  bricks.words.give_back();
+  large.part.write_leaves(bricks.words.data());
+  std::fill_n(bricks.words.data() + end.word, widest_vector, 0u);
   bricks.roots.assign(cell_count(bricks.cells.n), Bricks::empty_cell);
   bricks.root_boxes.assign(bricks.roots.size(), {});
   for (const Task& task : tasks)

@@ -76,8 +76,8 @@ class BrickGrid final : public Structure {
     stats_.bytes = meter_.bytes();
     stats_.peak_bytes = meter_.peak();
     stats_.bytes_by_part = {{"roots", bricks_.roots.capacity() * (sizeof(std::uint32_t) + sizeof(RootBox))},
-                            {"nodes", bricks_.nodes.capacity() * sizeof(BrickNode)},
-                            {"leaves", bricks_.words.capacity() * sizeof(std::uint32_t)}};
+                            {"nodes", bricks_.nodes.bytes()},
+                            {"leaves", bricks_.words.bytes()}};
   }
 
   void trace_closest(const BatchView& batch, std::span<Hit> hits) const override {

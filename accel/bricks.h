@@ -8,6 +8,7 @@
 #include <string>
 
 #include "accel/cell_grid.h"
+#include "accel/growing_array.h"
 #include "accel/memory_meter.h"
 #include "accel/triangle_rows.h"
 #include "accel/walk_space.h"
@@ -124,16 +125,16 @@ struct Bricks {
   explicit Bricks(MemoryMeter& meter)
       : roots(MeteredAllocator<std::uint32_t>(meter)),
         root_boxes(MeteredAllocator<RootBox>(meter)),
-        nodes(MeteredAllocator<BrickNode>(meter)),
-        words(RawMeteredAllocator<std::uint32_t>(meter)) {}
+        nodes(meter),
+        words(meter) {}
 
   WalkSpace space;
   CellGrid cells;
   FloatGrid grid;                      ///< the same
   MeteredVector<std::uint32_t> roots;  ///< by cell: its root among the nodes, or empty_cell
   MeteredVector<RootBox> root_boxes;   ///< by cell, of those that have one
-  MeteredVector<BrickNode> nodes;
-  RawMeteredVector<std::uint32_t> words;
+  GrowingArray<BrickNode> nodes;
+  GrowingArray<std::uint32_t> words;
   double margin = 0;        ///< what nodes' boxes and cells are grown by, at least
   std::uint32_t depth = 0;  ///< levels of bricks below a root, at most
 };

@@ -48,6 +48,27 @@ TEST(Parallel, SumsAreEqualForAnyNumberOfThreads) {
   EXPECT_EQ(sums, std::vector<double>(4, sums[0]));
 }
 
+TEST(Parallel, MiddlesAreInOrder) {
+  for (const int threads : {1, 2, 7})
+    with_threads(threads, [&] {
+      constexpr std::uint64_t items = 1000;
+      std::vector<int> steps(items);
+      std::vector<std::uint64_t> middles;
+      for_each_in_order(
+          items, [&](std::uint64_t i) { EXPECT_EQ(steps[i]++, 0); },
+          [&](std::uint64_t i) {
+            EXPECT_EQ(steps[i]++, 1);
+            middles.push_back(i);
+          },
+          [&](std::uint64_t i) { EXPECT_EQ(steps[i]++, 2); });
+      EXPECT_EQ(steps, std::vector<int>(items, 3));
+      ASSERT_EQ(middles.size(), items);
+      EXPECT_TRUE(std::ranges::is_sorted(middles));
+    });
+  for_each_in_order(
+      0, [](std::uint64_t) { FAIL(); }, [](std::uint64_t) { FAIL(); }, [](std::uint64_t) { FAIL(); });
+}
+
 /// Every list in full.
 std::vector<std::vector<std::uint32_t>> lists_of(const CellLists& lists) {
   std::vector<std::vector<std::uint32_t>> all;
@@ -118,6 +139,29 @@ TEST(ParallelBuild, EveryStructureCostsTheSameForAnyNumberOfThreads) {
       EXPECT_EQ(seen_from_outside(spec, scene, rays, 2), one) << spec << " on " << name;
       EXPECT_EQ(seen_from_outside(spec, scene, rays, 6), one) << spec << " on " << name;
     }
+  }
+}
+
+/// Where a scene is more than a cache holds, bricks are made in another order, of corners that are fetched
+/// once.
+TEST(ParallelBuild, OfBricksIsTheSameWhereTheSceneIsLarge) {
+  const Scene soup = open_scene("soup:triangles=30000:size=0.05"),
+              spheres = open_scene("clusters:objects=10000:primitive=sphere");
+  const auto with_vertices = [&](std::size_t more) {
+    SceneData data;
+    data.name = "mixed";
+    data.vertices.assign(soup.vertices().begin(), soup.vertices().end());
+    data.vertices.resize(data.vertices.size() + more, data.vertices[0]);  // that no triangle has
+    data.triangles.assign(soup.triangles().begin(), soup.triangles().end());
+    data.quadrics.assign(spheres.quadrics().begin(), spheres.quadrics().end());
+    return Scene(std::move(data));
+  };
+  const Scene small = with_vertices(0), large = with_vertices(400000);
+  const auto rays = hostile_rays(9, 200, small);
+  for (const char* spec : {"brick-grid", "brick-grid:cells=1", "brick-grid:leaf=1"}) {
+    const std::string one = seen_from_outside(spec, small, rays, 1);
+    for (const unsigned threads : {1, 2, 6})
+      EXPECT_EQ(seen_from_outside(spec, large, rays, threads), one) << spec << ' ' << threads;
   }
 }
 
