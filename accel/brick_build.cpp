@@ -287,7 +287,7 @@ constexpr std::uint64_t most_numbered = std::numeric_limits<std::uint32_t>::max(
 /// Nodes and leaves, with places of their own. Of leaves first only what is in them: their words are written
 /// when it is known how many there are before them.
 template <class Primitives>
-struct Part {
+struct alignas(2 * cache_line) Part {
   struct Leaf {
     std::uint32_t triangles, others;
   };
