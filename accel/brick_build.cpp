@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "accel/cell_lists.h"
 #include "accel/cell_overlap.h"
 #include "accel/local_primitives.h"
 #include "accel/parallel.h"
+#include "accel/sparse_lists.h"
 #include "scenes/base/error.h"
 #include "scenes/geometry/rounding.h"
 
@@ -93,13 +93,14 @@ class NodeRules {
 
   /// The grid in blocks of 4x4x4 cells, as bricks whose planes are the grid's but for their slack.
   std::uint64_t block_count() const { return cell_count(blocks_); }
+  /// Calls visit(first, how many) for the rows of blocks that a primitive's box meets.
   template <class Visit>
-  void for_each_block_near(std::uint32_t primitive, const Visit& visit) const {
+  void for_each_row_near(std::uint32_t primitive, const Visit& visit) const {
     const CellRange cells = cells_of_box(bricks_.cells, scene_.bounds_of(primitive), bricks_.space.margin);
+    const std::uint32_t first = cells.first[0] / 4, count = cells.last[0] / 4 - first + 1;
     for (std::uint32_t k = cells.first[2] / 4; k <= cells.last[2] / 4; ++k)
       for (std::uint32_t j = cells.first[1] / 4; j <= cells.last[1] / 4; ++j)
-        for (std::uint32_t i = cells.first[0] / 4; i <= cells.last[0] / 4; ++i)
-          visit(i + blocks_[0] * (j + std::uint64_t{blocks_[1]} * k));
+        visit(first + blocks_[0] * (j + std::uint64_t{blocks_[1]} * k), count);
   }
   CutBrick block(std::uint64_t index) const {
     const CellGrid& grid = bricks_.cells;
@@ -685,23 +686,14 @@ void make_parts(const NodeRules& rules, std::span<Task> tasks, const Primitives&
 void build_bricks(const Scene& scene, const BrickOptions& options, MemoryMeter& meter, Bricks& bricks) {
   const NodeRules rules(scene, bricks, options);
   MeteredVector<Task> tasks{MeteredAllocator<Task>(meter)};
-  CellLists lists(meter);
-  {
-    // The one block that a primitive is near, so that its box need not be found twice.
-    constexpr std::uint32_t unknown = 0xffffffffu;
-    MeteredVector<std::uint32_t> only(scene.primitive_count(), unknown,
-                                      MeteredAllocator<std::uint32_t>(meter));
-    lists.build(rules.block_count(), scene.primitive_count(), [&](std::uint32_t p, const auto& add) {
-      if (only[p] != unknown) return add(only[p]);
-      std::uint64_t near = 0, last = 0;
-      rules.for_each_block_near(p, [&](std::uint64_t block) {
-        add(block);
-        ++near;
-        last = block;
-      });
-      if (near == 1) only[p] = static_cast<std::uint32_t>(last);
-    });
-  }
+  SparseLists lists(meter);
+  lists.build(rules.block_count(), scene.primitive_count(),
+              [&](std::uint32_t begin, std::uint32_t end, const auto& add) {
+                for (std::uint32_t p = begin; p < end; ++p)
+                  rules.for_each_row_near(
+                      p, [&](std::uint64_t first, std::uint32_t count) { add(p, first, count); });
+                return true;
+              });
   for (std::uint32_t block = 0; block < lists.cells(); ++block)
     if (!lists[block].empty()) tasks.push_back({.primitives = lists[block], .block = block});
 
