@@ -286,7 +286,8 @@ constexpr std::uint64_t most_numbered = std::numeric_limits<std::uint32_t>::max(
 }
 
 /// Nodes and leaves, with places of their own. Of leaves first only what is in them: their words are written
-/// when it is known how many there are before them.
+/// when it is known how many there are before them. Threads make neighbouring parts at the same time: none
+/// shares a line of the cache with the next, nor the pair of lines that is fetched together.
 template <class Primitives>
 struct alignas(2 * cache_line) Part {
   struct Leaf {
