@@ -115,7 +115,7 @@ class ClosestHits : public PacketQuery<Probe> {
   /// A triangle of the block, against vector v of the rays.
   HWY_INLINE void consider_triangle(const LeafBlock& block, std::size_t i, std::size_t v,
                                     const BlockTest& test) {
-    const BlockTest::Bounds t = test.bounds();
+    BlockTest::Bounds t;
     const auto [possible, certain] = test.within(packet_.intervals(v), t);
     if (possible == 0) return;
     const FloatVector least = t.least_t(), greatest = t.greatest_t();
@@ -135,7 +135,7 @@ class ClosestHits : public PacketQuery<Probe> {
   }
   /// A ray against the block.
   HWY_INLINE void consider_ray(const LeafBlock& block, std::size_t ray, const BlockTest& test) {
-    const BlockTest::Bounds t = test.bounds();
+    BlockTest::Bounds t;
     const auto [possible, certain] = test.within(packet_.interval_in_all_lanes(ray), t);
     if (possible == 0) return;
     alignas(64) float least[lanes], greatest[lanes];
@@ -254,14 +254,16 @@ class AnyHits : public PacketQuery<Probe> {
 
   HWY_INLINE void consider_triangle(const LeafBlock& block, std::size_t i, std::size_t v,
                                     const BlockTest& test) {
-    const auto [possible, certain] = test.within(packet_.intervals(v), test.bounds());
+    BlockTest::Bounds t;
+    const auto [possible, certain] = test.within(packet_.intervals(v), t);
     hit(packet_bits(certain, v));
     const PacketMask open = packet_bits(possible & ~certain, v);
     if (open != 0) decide_on(open, block, i, packet_bits(test.inside(), v));
   }
   HWY_INLINE void consider_ray(const LeafBlock& block, std::size_t ray, const BlockTest& test) {
     const PacketMask one = PacketMask{1} << ray;
-    const auto [possible, certain] = test.within(packet_.interval_in_all_lanes(ray), test.bounds());
+    BlockTest::Bounds t;
+    const auto [possible, certain] = test.within(packet_.interval_in_all_lanes(ray), t);
     if (certain != 0) return hit(one);
     for (std::uint64_t rest = possible; rest != 0 && (live_ & one) != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));

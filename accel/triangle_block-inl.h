@@ -31,8 +31,12 @@ HWY_INLINE FloatVec3 cross_of(const FloatVec3& a, const FloatVec3& b) {
 HWY_INLINE FloatVector dot_of(const FloatVec3& a, const FloatVec3& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
+HWY_INLINE FloatVec3 absolute(const FloatVec3& v) {
+  return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)};
+}
 HWY_INLINE FloatVector norm_of(const FloatVec3& v) {
-  return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
+  const FloatVec3 a = absolute(v);
+  return hn::Add(hn::Add(a.x, a.y), a.z);
 }
 HWY_INLINE FloatVec3 minus(const FloatVec3& a, const FloatVec3& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
@@ -57,8 +61,8 @@ struct LaneIntervals {
 struct BlockTest {
   std::uint64_t candidates = 0;  ///< the ray's line may pass through the triangle
   FloatVector det, height;       ///< t is height / det
+  FloatVec3 s, e1, e2;           ///< from the first corner to the ray's origin and to the other corners
   FloatVector edge;              ///< in TriangleRows::edge_unit
-  FloatVector distance;          ///< of the first corner from the ray's origin, 1-norm
   FloatVector least, greatest;   ///< of the three numbers that say on which side of the edges it passes
   FloatVector error;             ///< of these
 
@@ -67,8 +71,7 @@ struct BlockTest {
     return bits_of(hn::Or(hn::Gt(least, error), hn::Lt(greatest, hn::Neg(error))));
   }
 
-  /// Of |det| and of the height with its sign, with the errors of filter.h; infinite where something may have
-  /// overflowed.
+  /// Of |det| and of the height with its sign; infinite where something may have overflowed.
   struct Bounds {
     FloatVector least_det, greatest_det, lowest, highest;
     hn::Mask<Floats> steep;  ///< t is known at all
@@ -81,27 +84,56 @@ struct BlockTest {
       return hn::Mul(hn::Div(highest, least_det), hn::Set(Floats(), 1 + 0x1p-20f));
     }
   };
-  HWY_INLINE Bounds bounds() const {
-    const Floats d;
-    // 2^-20 edge^2, and that times the distance.
-    constexpr float unit = TriangleRows::edge_unit;
-    const FloatVector edges = hn::Mul(edge, edge);
-    const FloatVector det_error = hn::Mul(edges, hn::Set(d, 0x1p-20f / (unit * unit)));
-    // A bound by the cell would do, but not tell that a ray leaves the triangle that it starts on.
-    const FloatVector away = hn::Add(distance, hn::Set(d, filter::tiny));
-    const FloatVector height_error = hn::Mul(hn::Mul(edges, away), hn::Set(d, 0x1p-20f / (unit * unit)));
-    const FloatVector positive = hn::Abs(det), along = hn::Xor(height, hn::And(det, hn::SignBit(d)));
-    const FloatVector least_det = hn::Sub(positive, det_error);
-    return {least_det, hn::Add(positive, det_error), hn::Sub(along, height_error),
-            hn::Add(along, height_error), hn::Gt(least_det, det_error)};
-  }
 
   struct Hits {
     std::uint64_t possible;  ///< of the candidates: t may lie in the interval
     std::uint64_t certain;   ///< of these: passed inside, and `decide` certainly accepts it
   };
-  /// What t says of the candidates.
-  HWY_INLINE Hits within(const LaneIntervals& interval, const Bounds& t) const {
+  /// What t says of the candidates; sets its bounds.
+  HWY_INLINE Hits within(const LaneIntervals& interval, Bounds& t) const {
+    t = bounds(height_error_by_norms());
+    const Hits hits = within_bounds(interval, t);
+    // Nearly always a ray that leaves the triangle that it starts on.
+    if ((hits.possible & ~hits.certain & inside()) == 0) return hits;
+    t = bounds(height_error_by_products());
+    return within_bounds(interval, t);
+  }
+
+ private:
+  static constexpr float unit = TriangleRows::edge_unit;
+  /// Multiplied with lengths before it is scaled, this overflows before the height does.
+  HWY_INLINE FloatVector edge_squared() const { return hn::Mul(edge, edge); }
+
+  /// As in filter.h. A bound by the cell would do in place of the distance, but not tell that a ray leaves
+  /// the triangle that it starts on.
+  HWY_INLINE FloatVector height_error_by_norms() const {
+    const Floats d;
+    const FloatVector away = hn::Add(norm_of(s), hn::Set(d, filter::tiny));
+    return hn::Mul(hn::Mul(edge_squared(), away), hn::Set(d, 0x1p-20f / (unit * unit)));
+  }
+  /// The height is a sum of six products of a coordinate each of s, e1 and e2. Its error is at most 8u of the
+  /// sum of their absolute values: three roundings for the factors, two for q, three for the dot product.
+  /// That is much less than by norms, least of all where the triangle lies across an axis. Overflow comes
+  /// sooner by a factor of 4, and the last term pays for what is flushed, as filter::tiny does.
+  HWY_INLINE FloatVector height_error_by_products() const {
+    const Floats d;
+    const FloatVec3 a = absolute(s), b = absolute(e1);
+    const FloatVec3 ab{hn::MulAdd(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulAdd(a.z, b.x, hn::Mul(a.x, b.z)),
+                       hn::MulAdd(a.x, b.y, hn::Mul(a.y, b.x))};
+    const FloatVector products = hn::Mul(dot_of(absolute(e2), ab), hn::Set(d, 4.0f));
+    return hn::MulAdd(products, hn::Set(d, 0x1.1p-23f),
+                      hn::Mul(edge_squared(), hn::Set(d, 0x1p-20f * filter::tiny / (unit * unit))));
+  }
+
+  HWY_INLINE Bounds bounds(FloatVector height_error) const {
+    const Floats d;
+    const FloatVector det_error = hn::Mul(edge_squared(), hn::Set(d, 0x1p-20f / (unit * unit)));
+    const FloatVector positive = hn::Abs(det), along = hn::Xor(height, hn::And(det, hn::SignBit(d)));
+    const FloatVector least_det = hn::Sub(positive, det_error);
+    return {least_det, hn::Add(positive, det_error), hn::Sub(along, height_error),
+            hn::Add(along, height_error), hn::Gt(least_det, det_error)};
+  }
+  HWY_INLINE Hits within_bounds(const LaneIntervals& interval, const Bounds& t) const {
     const auto beyond = hn::Or(hn::Gt(t.lowest, hn::Mul(interval.after, t.greatest_det)),
                                hn::Lt(t.highest, hn::Mul(interval.before, t.least_det)));
     const auto between = hn::And(hn::Gt(t.lowest, hn::Mul(interval.inside_from, t.greatest_det)),
@@ -140,7 +172,16 @@ HWY_INLINE BlockTest test_lanes(const FloatVec3& origin, const FloatVec3& direct
   const FloatVector error = hn::Mul(area, hn::Set(d, 0x1.8p-20f / TriangleRows::edge_unit));
   const FloatVector least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
   const auto outside = hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(greatest, error));
-  return {there & ~bits_of(outside), det, dot_of(triangles.e2, q), edge, norm_of(s), least, greatest, error};
+  return {there & ~bits_of(outside),
+          det,
+          dot_of(triangles.e2, q),
+          s,
+          triangles.e1,
+          triangles.e2,
+          edge,
+          least,
+          greatest,
+          error};
 }
 
 /// The triangles first, first + 1, ... of `rows`.

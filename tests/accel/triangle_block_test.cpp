@@ -69,7 +69,8 @@ void test_leaf(const FilterRay& filter, const std::uint32_t* words, float tmax,
   }
   for (std::uint32_t first = 0; first < rows.count; first += lanes) {
     const BlockTest test = test_block(origin, direction, rows, first, reach);
-    const auto [possible, certain] = test.within(interval, test.bounds());
+    BlockTest::Bounds t;
+    const auto [possible, certain] = test.within(interval, t);
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
       const auto claimed = [&](std::uint64_t lanes_of) { return (lanes_of >> lane & 1u) != 0; };
       const std::uint32_t i = first + lane;
