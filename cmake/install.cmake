@@ -13,7 +13,7 @@ install(TARGETS raymeter_pictures DESTINATION ${CMAKE_INSTALL_LIBDIR}/raymeter)
 
 # Headers that need libraries which users of the others need not have.
 set(private_headers
-  accel/answer_rays-inl.h accel/brick_build.h accel/brick_packet-inl.h accel/brick_cells-inl.h accel/brick_walk-inl.h accel/cell_lists.h
+  accel/answer_rays-inl.h accel/brick_build.h accel/brick_packet-inl.h accel/brick_part.h accel/brick_rules.h accel/brick_cells-inl.h accel/brick_walk-inl.h accel/cell_lists.h
   accel/decide_lanes-inl.h accel/packet_frustum-inl.h accel/parallel.h accel/ray_packet-inl.h accel/leaf_queries-inl.h accel/sparse_lists.h
   accel/triangle_block-inl.h accel/two_level_cells.h
   baselines/embree_api.h baselines/embree_device.h
