@@ -113,16 +113,18 @@ struct BlockTest {
   }
   /// The height is a sum of six products of a coordinate each of s, e1 and e2. Its error is at most 8u of the
   /// sum of their absolute values: three roundings for the factors, two for q, three for the dot product.
-  /// That is much less than by norms, least of all where the triangle lies across an axis. Overflow comes
-  /// sooner by a factor of 4, and the last term pays for what is flushed, as filter::tiny does.
+  /// By norms it may be ten times as much, and more for a triangle across an axis. Overflow comes sooner by a
+  /// factor of 4; the last term pays for what is flushed, 2^-126 times (1 + edge)^2 (1 + |s|) at most some
+  /// thirty times, as the edge is at least filter::tiny.
   HWY_INLINE FloatVector height_error_by_products() const {
     const Floats d;
     const FloatVec3 a = absolute(s), b = absolute(e1);
     const FloatVec3 ab{hn::MulAdd(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulAdd(a.z, b.x, hn::Mul(a.x, b.z)),
                        hn::MulAdd(a.x, b.y, hn::Mul(a.y, b.x))};
     const FloatVector products = hn::Mul(dot_of(absolute(e2), ab), hn::Set(d, 4.0f));
+    const FloatVector flushed = hn::Mul(edge_squared(), hn::Add(norm_of(s), hn::Set(d, 1.0f)));
     return hn::MulAdd(products, hn::Set(d, 0x1.1p-23f),
-                      hn::Mul(edge_squared(), hn::Set(d, 0x1p-20f * filter::tiny / (unit * unit))));
+                      hn::Mul(flushed, hn::Set(d, 0x1p-52f / (unit * unit))));
   }
 
   HWY_INLINE Bounds bounds(FloatVector height_error) const {
